@@ -1,0 +1,74 @@
+//! Cube map addressing, as Vulkan, Direct3D and WebGPU define it.
+
+use glam::{Vec2, Vec3};
+
+use crate::Face;
+
+/// Where a direction meets a cube map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CubeCoord {
+    /// The face.
+    pub face: Face,
+    /// Position on the face, 0 … 1 from left to right and top to bottom.
+    pub uv: Vec2,
+}
+
+/// The signed axis vectors (right, down) of a face's image, looking from the centre.
+fn frame(face: Face) -> (Vec3, Vec3) {
+    match face {
+        Face::PosX => (-Vec3::Z, -Vec3::Y),
+        Face::NegX => (Vec3::Z, -Vec3::Y),
+        Face::PosY => (Vec3::X, Vec3::Z),
+        Face::NegY => (Vec3::X, -Vec3::Z),
+        Face::PosZ => (Vec3::X, -Vec3::Y),
+        Face::NegZ => (-Vec3::X, -Vec3::Y),
+    }
+}
+
+/// The face and position of a direction (Vulkan specification, "Cube Map Face Selection and Transformations").
+///
+/// `None` for a direction that is zero or not finite.
+#[must_use]
+pub fn cube_coord(direction: Vec3) -> Option<CubeCoord> {
+    let face = Face::dominant(direction)?;
+    let (right, down) = frame(face);
+    let largest = direction[face.axis()].abs();
+    // Divide before taking the dot product: a quotient is at most 1, whatever the length of the direction.
+    let scaled = direction / largest;
+    Some(CubeCoord { face, uv: 0.5 * Vec2::new(scaled.dot(right), scaled.dot(down)) + 0.5 })
+}
+
+/// The direction (largest component ±1) through a position on a face; inverse of [`cube_coord`].
+#[must_use]
+pub fn cube_direction(coord: CubeCoord) -> Vec3 {
+    let (right, down) = frame(coord.face);
+    let p = 2.0 * coord.uv - 1.0;
+    let forward = coord.face.vector(Vec2::ZERO, coord.face.sign());
+    forward + p.x * right + p.y * down
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_round_trip() {
+        for face in Face::ALL {
+            for uv in [Vec2::new(0.25, 0.75), Vec2::splat(0.5), Vec2::new(0.9, 0.1)] {
+                let coord = CubeCoord { face, uv };
+                let back = cube_coord(cube_direction(coord) * 3.0).unwrap();
+                assert_eq!(back.face, face);
+                assert!((back.uv - uv).abs().max_element() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn seen_from_inside_up_is_up() {
+        // On the four side faces, a smaller v means a larger y.
+        for face in [Face::PosX, Face::NegX, Face::PosZ, Face::NegZ] {
+            let top = cube_direction(CubeCoord { face, uv: Vec2::new(0.5, 0.0) });
+            assert_eq!(top.y, 1.0);
+        }
+    }
+}

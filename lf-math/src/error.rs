@@ -1,0 +1,66 @@
+//! The crate's one error type.
+
+use thiserror::Error;
+
+/// Why a geometric value could not be made.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum GeometryError {
+    /// A number is NaN or infinite.
+    #[error("{what} must be finite, is {value}")]
+    NotFinite {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f32,
+    },
+    /// A number that has to be positive is not.
+    #[error("{what} must be greater than zero, is {value}")]
+    NotPositive {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f32,
+    },
+    /// A count of zero.
+    #[error("{what} must be at least 1")]
+    ZeroCount {
+        /// Which count.
+        what: &'static str,
+    },
+    /// Two slabs look in the same direction.
+    #[error("two slabs share the face {face}; each face may have one")]
+    DuplicateFace {
+        /// The name of the face.
+        face: &'static str,
+    },
+    /// No slab, or slabs not in the order of their faces.
+    #[error("slabs must be one to six, in the order +X -X +Y -Y +Z -Z")]
+    SlabOrder,
+    /// An index buffer or an image has a length that its shape does not allow.
+    #[error("{what} has length {len}, expected {expected}")]
+    Length {
+        /// Which buffer.
+        what: &'static str,
+        /// Its length.
+        len: usize,
+        /// The length that was needed.
+        expected: usize,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle index {index} is out of range for {vertices} vertices")]
+    VertexIndex {
+        /// The index.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+}
+
+pub(crate) fn finite(what: &'static str, value: f32) -> Result<f32, GeometryError> {
+    if value.is_finite() { Ok(value) } else { Err(GeometryError::NotFinite { what, value }) }
+}
+
+pub(crate) fn positive(what: &'static str, value: f32) -> Result<f32, GeometryError> {
+    if finite(what, value)? > 0.0 { Ok(value) } else { Err(GeometryError::NotPositive { what, value }) }
+}

@@ -1,0 +1,106 @@
+//! The viewer's camera.
+
+use glam::{Mat4, Vec3, Vec4};
+
+use crate::error::{GeometryError, positive};
+use crate::{Ray, normalized};
+
+/// A pinhole camera in cell space, looking from `eye` along its forward axis, with square pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pinhole {
+    eye: Vec3,
+    right: Vec3,
+    up: Vec3,
+    forward: Vec3,
+    tan_half_y: f32,
+    width: u32,
+    height: u32,
+}
+
+impl Pinhole {
+    /// A camera at `eye` that looks at `target` with +Y up (or +X up, if it looks along Y).
+    ///
+    /// `fov_y` is the vertical field of view in radians, `width × height` the image in pixels.
+    ///
+    /// # Errors
+    /// `eye` and `target` must be finite and distinct, `fov_y` in 0 … π, the sizes at least 1.
+    pub fn look_at(eye: Vec3, target: Vec3, fov_y: f32, width: u32, height: u32) -> Result<Self, GeometryError> {
+        let distance = (target - eye).length();
+        let forward = normalized(target - eye)
+            .filter(|_| eye.is_finite())
+            .ok_or(GeometryError::NotPositive { what: "distance from eye to target", value: distance })?;
+        let right = normalized(forward.cross(Vec3::Y)).unwrap_or(Vec3::Z);
+        let tan_half_y = positive("tangent of half the field of view", libm::tanf(0.5 * fov_y))?;
+        if width == 0 || height == 0 {
+            return Err(GeometryError::ZeroCount { what: "image size" });
+        }
+        Ok(Self { eye, right, up: right.cross(forward), forward, tan_half_y, width, height })
+    }
+
+    /// Where the camera stands, cell space.
+    #[must_use]
+    pub fn eye(&self) -> Vec3 {
+        self.eye
+    }
+
+    /// Image width in pixels.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Image height in pixels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The ray through the centre of pixel (`x`, `y`); its direction has a forward component of 1.
+    #[must_use]
+    pub fn ray(&self, x: u32, y: u32) -> Ray {
+        let scale = 2.0 * self.tan_half_y / self.height as f32;
+        let dx = (x as f32 + 0.5 - 0.5 * self.width as f32) * scale;
+        let dy = (0.5 * self.height as f32 - (y as f32 + 0.5)) * scale;
+        Ray { origin: self.eye, direction: self.forward + dx * self.right + dy * self.up }
+    }
+
+    /// The matrix from cell space to clip space: x right, y up, depth `1 − near/z` in 0 … 1 without a far plane.
+    #[must_use]
+    pub fn clip_from_cell(&self, near: f32) -> Mat4 {
+        let sy = 1.0 / self.tan_half_y;
+        let sx = sy * self.height as f32 / self.width as f32;
+        let row = |axis: Vec3, scale: f32| (axis * scale).extend(-self.eye.dot(axis) * scale);
+        let w = row(self.forward, 1.0);
+        let z = w - Vec4::new(0.0, 0.0, 0.0, near);
+        Mat4::from_cols(row(self.right, sx), row(self.up, sy), z, w).transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn refuses_what_cannot_look() {
+        assert!(Pinhole::look_at(Vec3::ONE, Vec3::ONE, 1.0, 4, 4).is_err());
+        assert!(Pinhole::look_at(Vec3::ONE, Vec3::ZERO, 0.0, 4, 4).is_err());
+        assert!(Pinhole::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0, 4).is_err());
+        assert!(Pinhole::look_at(Vec3::ZERO, Vec3::Y, 1.0, 4, 4).is_ok());
+        assert!(Pinhole::look_at(Vec3::ZERO, Vec3::NAN, 1.0, 4, 4).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn rays_and_matrix_agree(x in 0u32..64, y in 0u32..48, depth in 0.2f32..50.0) {
+            let camera = Pinhole::look_at(Vec3::new(1.0, 2.0, 3.0), Vec3::new(-1.0, 0.5, 0.0), 0.8, 64, 48).unwrap();
+            let clip = camera.clip_from_cell(0.1) * camera.ray(x, y).at(depth).extend(1.0);
+            let pixel_x = (0.5 + 0.5 * clip.x / clip.w) * 64.0;
+            let pixel_y = (0.5 - 0.5 * clip.y / clip.w) * 48.0;
+            prop_assert!((pixel_x - (x as f32 + 0.5)).abs() < 1e-3);
+            prop_assert!((pixel_y - (y as f32 + 0.5)).abs() < 1e-3);
+            prop_assert!((clip.w - depth).abs() < 1e-4 * depth);
+            prop_assert!(clip.z > 0.0 && clip.z < clip.w);
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! One light field slab: a grid of cameras on a plane, all sharing one grid of ray slopes.
+
+use glam::{Vec2, Vec3};
+
+use crate::error::{GeometryError, finite, positive};
+use crate::{Face, Ray, SampledAxis};
+
+/// A slab of the environment light field (§3 and §5 of the paper), in cell space.
+///
+/// With k the axis of the face, the camera with indices (i, j) stands at `s[i], t[j]` on the plane `x_k = plane`. Texel
+/// (m, n) of every camera's image holds the light that arrives along the slopes `u[m] = d_s/|d_k|`, `v[n] = d_t/|d_k|`
+/// from the side the face looks to. (s, u) run along the first and (t, v) along the second of [`Face::tangents`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slab {
+    face: Face,
+    plane: f32,
+    st: [SampledAxis; 2],
+    uv: [SampledAxis; 2],
+    focal_depth: Option<f32>,
+}
+
+/// A ray in the sample indices (s′, t′, u′, v′) of one slab (Eq. 1 of the paper): real-valued, sample centres at integers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlabCoord {
+    /// (s′, t′): which camera.
+    pub st: Vec2,
+    /// (u′, v′): which texel of a camera standing exactly at (s′, t′).
+    pub uv: Vec2,
+}
+
+/// One of the four cameras around a ray, where to look in its image, and how much it counts.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CameraTap {
+    /// Camera indices along s and t.
+    pub camera: [u32; 2],
+    /// Position in that camera's image in index units, within 0 … count − 1: all four bilinear neighbours are its own.
+    pub uv: Vec2,
+    /// Bilinear weight, 0 … 1; the four add up to 1.
+    pub weight: f32,
+}
+
+impl Slab {
+    /// A slab from its parts: `plane` is the signed coordinate of the camera plane along the face's axis (metres, cell
+    /// space), `st` the camera positions (metres), `uv` the slopes (no unit), `focal_depth` the distance from the camera
+    /// plane to the focal plane (metres), or `None` to focus at infinity.
+    ///
+    /// # Errors
+    /// `plane` must be finite, `focal_depth` finite and greater than 0.
+    pub fn new(
+        face: Face,
+        plane: f32,
+        st: [SampledAxis; 2],
+        uv: [SampledAxis; 2],
+        focal_depth: Option<f32>,
+    ) -> Result<Self, GeometryError> {
+        finite("camera plane", plane)?;
+        if let Some(depth) = focal_depth {
+            positive("focal depth", depth)?;
+        }
+        Ok(Self { face, plane, st, uv, focal_depth })
+    }
+
+    /// The face direction this slab serves.
+    #[must_use]
+    pub fn face(&self) -> Face {
+        self.face
+    }
+
+    /// Coordinate of the camera plane along the face's axis, metres, cell space.
+    #[must_use]
+    pub fn plane(&self) -> f32 {
+        self.plane
+    }
+
+    /// Camera positions along s and t.
+    #[must_use]
+    pub fn st(&self) -> [SampledAxis; 2] {
+        self.st
+    }
+
+    /// Ray slopes along u and v.
+    #[must_use]
+    pub fn uv(&self) -> [SampledAxis; 2] {
+        self.uv
+    }
+
+    /// Distance from the camera plane to the focal plane, metres; `None` is infinity.
+    #[must_use]
+    pub fn focal_depth(&self) -> Option<f32> {
+        self.focal_depth
+    }
+
+    /// The same slab with another focal plane.
+    ///
+    /// # Errors
+    /// `focal_depth` must be finite and greater than 0.
+    pub fn with_focal_depth(self, focal_depth: Option<f32>) -> Result<Self, GeometryError> {
+        Self::new(self.face, self.plane, self.st, self.uv, focal_depth)
+    }
+
+    /// Number of camera images.
+    #[must_use]
+    pub fn cameras(&self) -> [u32; 2] {
+        self.st.map(|axis| axis.count())
+    }
+
+    /// Texels of one camera image.
+    #[must_use]
+    pub fn resolution(&self) -> [u32; 2] {
+        self.uv.map(|axis| axis.count())
+    }
+
+    /// The ray that a sample stores, starting on the camera plane: `camera` and `texel` are real-valued indices along
+    /// (s, t) and (u, v). The direction's component along the face's axis is ±1.
+    #[must_use]
+    pub fn sample_ray(&self, camera: Vec2, texel: Vec2) -> Ray {
+        let at = |axes: &[SampledAxis; 2], index: Vec2| Vec2::new(axes[0].coord(index.x), axes[1].coord(index.y));
+        Ray {
+            origin: self.face.vector(at(&self.st, camera), self.plane),
+            direction: self.face.vector(at(&self.uv, texel), self.face.sign()),
+        }
+    }
+
+    /// The sample indices of a ray whose dominant face is this slab's (Eqs. 1, 3 and 4; Fig. 6 of the paper).
+    ///
+    /// `direction` must have its component of largest magnitude on this slab's axis and towards its face; then every
+    /// quotient is at most 1 and the result is finite for every finite origin that is not astronomically far away.
+    #[must_use]
+    pub fn index_ray(&self, ray: &Ray) -> SlabCoord {
+        let k = self.face.axis();
+        let slope = self.face.tangential(ray.direction) / ray.direction[k].abs();
+        let run = self.face.sign() * (self.plane - ray.origin[k]);
+        let position = self.face.tangential(ray.origin) + run * slope;
+        let index = |axes: &[SampledAxis; 2], v: Vec2| Vec2::new(axes[0].index(v.x), axes[1].index(v.y));
+        SlabCoord { st: index(&self.st, position), uv: index(&self.uv, slope) }
+    }
+
+    /// Whether a ray lies within the slab's 4D range, (0, 0, 0, 0) to the last indices (§3 of the paper).
+    #[must_use]
+    pub fn contains(&self, coord: &SlabCoord) -> bool {
+        let inside = |axes: &[SampledAxis; 2], v: Vec2| axes[0].contains_index(v.x) && axes[1].contains_index(v.y);
+        inside(&self.st, coord.st) && inside(&self.uv, coord.uv)
+    }
+
+    /// Texels that a point on the focal plane moves per camera step, along u and along v; 0 without a focal plane.
+    ///
+    /// A ray through `s` with slope `u` meets depth D at `s + D·u`; camera `sᵢ` sees that point along
+    /// `u + (s − sᵢ)/D`. In index units that is `step_s / (D·step_u)` texels per camera. The paper's `disparity`
+    /// (Eq. 6) multiplies `sᵢ − s`, so it is this number with the opposite sign.
+    #[must_use]
+    pub fn disparity(&self) -> Vec2 {
+        let per_step = |i: usize| self.focal_depth.map_or(0.0, |depth| self.st[i].step() / depth / self.uv[i].step());
+        Vec2::new(per_step(0), per_step(1))
+    }
+
+    /// The four cameras around a ray with their image positions and bilinear weights (Eqs. 5 and 6; Fig. 8).
+    ///
+    /// Indices outside the slab are clamped to its edge; ask [`Self::contains`] first where that matters. On an axis with
+    /// a single camera both neighbours are that camera.
+    #[must_use]
+    pub fn taps(&self, coord: &SlabCoord) -> [CameraTap; 4] {
+        let last = |axes: &[SampledAxis; 2]| Vec2::new(axes[0].last_index(), axes[1].last_index());
+        let st = coord.st.clamp(Vec2::ZERO, last(&self.st));
+        // The last camera is reached with weight 1 from the last but one, so that both always exist.
+        let base = st.floor().min((last(&self.st) - 1.0).max(Vec2::ZERO));
+        let fraction = st - base;
+        let (uv, uv_last, disparity) = (coord.uv, last(&self.uv), self.disparity());
+        [[0, 0], [1, 0], [0, 1], [1, 1]].map(|corner: [u32; 2]| {
+            let offset = Vec2::new(corner[0] as f32, corner[1] as f32);
+            let shares = (1.0 - offset) + (2.0 * offset - 1.0) * fraction;
+            let camera = (base + offset).min(last(&self.st));
+            CameraTap {
+                camera: [camera.x as u32, camera.y as u32],
+                uv: (uv + disparity * (st - camera)).clamp(Vec2::ZERO, uv_last),
+                weight: shares.x * shares.y,
+            }
+        })
+    }
+
+    /// Distance from the camera plane to a cell-space point, along the face's axis.
+    #[must_use]
+    pub fn depth(&self, point: Vec3) -> f32 {
+        self.face.sign() * (point[self.face.axis()] - self.plane)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn slab(face: Face, focal_depth: Option<f32>) -> Slab {
+        let st = SampledAxis::spanning(-1.5, 1.5, 32).unwrap();
+        let uv = SampledAxis::spanning(-1.0, 1.0, 128).unwrap();
+        Slab::new(face, 0.5 * face.sign(), [st, st], [uv, uv], focal_depth).unwrap()
+    }
+
+    /// Eq. 4 in double precision, written from the paper: intersect the line with the st plane.
+    fn index_by_eq_4(slab: &Slab, ray: &Ray) -> [f64; 4] {
+        let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let k = slab.face().axis();
+        let lambda = (f64::from(slab.plane()) - o[k]) / d[k];
+        let mut out = [0.0; 4];
+        for (i, axis) in slab.face().tangents().into_iter().enumerate() {
+            let [st, uv] = [slab.st()[i], slab.uv()[i]];
+            out[i] = (o[axis] + lambda * d[axis] - f64::from(st.first())) / f64::from(st.step());
+            out[2 + i] = (d[axis] / d[k].abs() - f64::from(uv.first())) / f64::from(uv.step());
+        }
+        out
+    }
+
+    #[test]
+    fn a_stored_sample_indexes_to_itself() {
+        for face in Face::ALL {
+            let slab = slab(face, None);
+            for (camera, texel) in [(Vec2::new(3.0, 30.0), Vec2::new(1.0, 126.0)), (Vec2::ZERO, Vec2::splat(64.0))] {
+                let ray = slab.sample_ray(camera, texel);
+                assert_eq!(Face::dominant(ray.direction), Some(face));
+                let coord = slab.index_ray(&ray);
+                assert!((coord.st - camera).abs().max_element() < 1e-4, "{face:?} {coord:?}");
+                assert!((coord.uv - texel).abs().max_element() < 1e-4, "{face:?} {coord:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn single_cameras_and_single_texels_work() {
+        let one = SampledAxis::spanning(-1.0, 1.0, 1).unwrap();
+        let slab = Slab::new(Face::PosZ, 1.0, [one, one], [one, one], Some(2.0)).unwrap();
+        let taps = slab.taps(&slab.index_ray(&Ray { origin: Vec3::ZERO, direction: Vec3::Z }));
+        assert_eq!(taps.iter().map(|tap| tap.weight).sum::<f32>(), 1.0);
+        assert!(taps.iter().all(|tap| tap.camera == [0, 0] && tap.uv == Vec2::ZERO));
+    }
+
+    #[test]
+    fn refuses_bad_planes() {
+        let s = slab(Face::PosX, None);
+        assert!(Slab::new(Face::PosX, f32::NAN, s.st(), s.uv(), None).is_err());
+        assert!(s.with_focal_depth(Some(0.0)).is_err());
+        assert!(s.with_focal_depth(Some(f32::INFINITY)).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn indices_match_the_papers_equations(
+            o in prop::array::uniform3(-0.5f32..0.5), d in prop::array::uniform3(-1.0f32..1.0)
+        ) {
+            let ray = Ray { origin: Vec3::from(o), direction: Vec3::from(d) };
+            prop_assume!(ray.direction.abs().max_element() > 1e-3);
+            let slab = slab(Face::dominant(ray.direction).unwrap(), None);
+            let coord = slab.index_ray(&ray);
+            let exact = index_by_eq_4(&slab, &ray);
+            for (value, exact) in [coord.st.x, coord.st.y, coord.uv.x, coord.uv.y].into_iter().zip(exact) {
+                prop_assert!((f64::from(value) - exact).abs() < 2e-5 * 128.0 / 32.0, "{value} {exact}");
+            }
+            prop_assert!(slab.contains(&coord));
+        }
+
+        #[test]
+        fn weights_are_a_partition_of_unity(s in -3.0f32..40.0, t in -3.0f32..40.0, depth in 0.1f32..100.0) {
+            let slab = slab(Face::NegY, Some(depth));
+            let taps = slab.taps(&SlabCoord { st: Vec2::new(s, t), uv: Vec2::new(60.0, 3.0) });
+            let sum: f32 = taps.iter().map(|tap| tap.weight).sum();
+            prop_assert!((sum - 1.0).abs() <= f32::EPSILON);
+            for tap in taps {
+                prop_assert!((0.0..=1.0).contains(&tap.weight));
+                prop_assert!(tap.camera.iter().all(|&c| c < 32));
+                prop_assert!(tap.uv.cmpge(Vec2::ZERO).all() && tap.uv.cmple(Vec2::splat(127.0)).all());
+            }
+            // The weighted camera positions give back the ray's own.
+            let mean: Vec2 = taps.iter().map(|tap| tap.weight * Vec2::from(tap.camera.map(|c| c as f32))).sum();
+            prop_assert!((mean - Vec2::new(s, t).clamp(Vec2::ZERO, Vec2::splat(31.0))).abs().max_element() < 1e-5);
+        }
+
+        /// All four cameras must look at the same point of the focal plane as the ray.
+        #[test]
+        fn taps_meet_on_the_focal_plane(x in -0.4f32..0.4, y in -0.4f32..0.4, u in -0.5f32..0.5, depth in 1.0f32..9.0) {
+            let slab = slab(Face::NegZ, Some(depth));
+            let ray = Ray { origin: Vec3::new(x, y, 0.2), direction: Vec3::new(u, 0.3, -1.0) };
+            let target = ray.at((depth + 0.5) + 0.2);
+            prop_assert!((slab.depth(target) - depth).abs() < 1e-5);
+            for tap in slab.taps(&slab.index_ray(&ray)) {
+                let seen = slab.sample_ray(Vec2::from(tap.camera.map(|c| c as f32)), tap.uv).at(depth);
+                prop_assert!((seen - target).length() < 2e-4 * depth, "{seen} {target}");
+            }
+        }
+    }
+}
