@@ -1,1 +1,21 @@
-//! x
+//! From decoded slabs to the bytes that a file stores and a GPU samples, and back.
+//!
+//! * [`bc1`]: BC1 (DXT1) blocks. Knows nothing of light fields; usable alone.
+//! * [`volume`]: the place of every camera image in one power-of-two volume texture.
+//! * [`PackedLightField`]: a light field as encoded tiles, one per volume slice: made from texels or read from a
+//!   container, uploaded to a GPU as it is or decoded again.
+//!
+//! Tiles are packed by zstd for the file, one frame each.
+
+#![forbid(unsafe_code)]
+
+pub mod bc1;
+mod packed;
+pub mod volume;
+mod zstd_tile;
+
+pub use packed::{PackError, PackedLightField};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

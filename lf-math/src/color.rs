@@ -2,18 +2,23 @@
 
 use glam::Vec3;
 
+/// Clamps to 0 … 1 and turns NaN into 0, which `clamp` would pass on.
+#[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
+fn unit_range(x: f32) -> f32 {
+    x.max(0.0).min(1.0)
+}
+
 /// The sRGB encoding of one linear component. Input and output range over 0 … 1; what lies outside is clamped, NaN gives 0.
 #[must_use]
 pub fn srgb_from_linear(linear: f32) -> f32 {
-    // `max` first: it turns NaN into 0.
-    let x = linear.max(0.0).min(1.0);
+    let x = unit_range(linear);
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * libm::powf(x, 1.0 / 2.4) - 0.055 }
 }
 
 /// The linear value of one sRGB-encoded component in 0 … 1.
 #[must_use]
 pub fn linear_from_srgb(encoded: f32) -> f32 {
-    let x = encoded.max(0.0).min(1.0);
+    let x = unit_range(encoded);
     if x <= 0.040_45 { x / 12.92 } else { libm::powf((x + 0.055) / 1.055, 2.4) }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::Face;
+use crate::{Face, GeometryError, Image};
 
 /// Where a direction meets a cube map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,6 +11,44 @@ pub struct CubeCoord {
     pub face: Face,
     /// Position on the face, 0 … 1 from left to right and top to bottom.
     pub uv: Vec2,
+}
+
+/// Six square images of equal size around a point, in the order of the faces: the classic environment map
+/// (Greene 1986). 8-bit RGBA, sRGB-encoded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CubeMap {
+    faces: [Image<[u8; 4]>; 6],
+}
+
+impl CubeMap {
+    /// A cube map from its faces +X −X +Y −Y +Z −Z.
+    ///
+    /// # Errors
+    /// All six must be square and of one size.
+    pub fn new(faces: [Image<[u8; 4]>; 6]) -> Result<Self, GeometryError> {
+        let size = faces[0].width();
+        for face in &faces {
+            for len in [face.width(), face.height()] {
+                if len != size {
+                    let (len, expected) = (len as usize, size as usize);
+                    return Err(GeometryError::Length { what: "edge of a cube map face", len, expected });
+                }
+            }
+        }
+        Ok(Self { faces })
+    }
+
+    /// The six images.
+    #[must_use]
+    pub fn faces(&self) -> &[Image<[u8; 4]>; 6] {
+        &self.faces
+    }
+
+    /// Texels along the edge of a face.
+    #[must_use]
+    pub fn size(&self) -> u32 {
+        self.faces[0].width()
+    }
 }
 
 /// The signed axis vectors (right, down) of a face's image, looking from the centre.
@@ -61,6 +99,15 @@ mod tests {
                 assert!((back.uv - uv).abs().max_element() < 1e-6);
             }
         }
+    }
+
+    #[test]
+    fn faces_must_be_equal_squares() {
+        let square = Image::filled(4, 4, [0; 4]);
+        let mut faces: [Image<[u8; 4]>; 6] = core::array::from_fn(|_| square.clone());
+        assert_eq!(CubeMap::new(faces.clone()).unwrap().size(), 4);
+        faces[3] = Image::filled(4, 5, [0; 4]);
+        assert!(CubeMap::new(faces).is_err());
     }
 
     #[test]

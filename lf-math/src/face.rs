@@ -45,7 +45,7 @@ impl Face {
     /// +1 or −1: which way along its axis the face looks.
     #[must_use]
     pub fn sign(self) -> f32 {
-        if self.index() % 2 == 0 { 1.0 } else { -1.0 }
+        if self.index().is_multiple_of(2) { 1.0 } else { -1.0 }
     }
 
     /// The two axes along which (s, t) and (u, v) run, in cyclic order: X → (y, z), Y → (z, x), Z → (x, y).

@@ -71,11 +71,18 @@ impl<T: Copy> Image<T> {
 
     /// Copies `source` so that its top left texel comes to (`x`, `y`); what does not fit is left out.
     pub fn blit(&mut self, source: &Self, x: u32, y: u32) {
-        let columns = source.width.min(self.width.saturating_sub(x)) as usize;
-        for row in 0..source.height.min(self.height.saturating_sub(y)) {
-            let from = row as usize * source.width as usize;
-            let to = (y + row) as usize * self.width as usize + x as usize;
-            self.texels[to..to + columns].copy_from_slice(&source.texels[from..from + columns]);
+        self.blit_rows(&source.texels, source.width, x, y);
+    }
+
+    /// Like [`Self::blit`], for the bare texels of an image of the given width; an incomplete last row is left out.
+    pub fn blit_rows(&mut self, source: &[T], source_width: u32, x: u32, y: u32) {
+        let columns = source_width.min(self.width.saturating_sub(x)) as usize;
+        if columns == 0 {
+            return;
+        }
+        for (row, from) in (y..self.height).zip(source.chunks_exact(source_width.max(1) as usize)) {
+            let to = row as usize * self.width as usize + x as usize;
+            self.texels[to..to + columns].copy_from_slice(&from[..columns]);
         }
     }
 
@@ -102,6 +109,7 @@ mod tests {
     fn blit_clips() {
         let mut canvas = Image::filled(3, 2, 0u8);
         canvas.blit(&Image::filled(2, 2, 7), 2, 1);
+        canvas.blit(&Image::filled(2, 2, 9), 7, 0);
         assert_eq!(canvas.texels(), [0, 0, 0, 0, 0, 7]);
     }
 }

@@ -10,8 +10,7 @@
 //! LightPack uses them the other way round.)
 //!
 //! Everything here works in **cell space**: world axes and metres, origin at the cell's centre, so that a cell far from
-//! the world's origin loses no precision. There is no input or output, no thread and no allocation outside
-//! [`Image`], [`TriangleMesh`] and [`LightFieldGeometry`]. Without the default feature `std` the crate needs only `alloc`.
+//! the world's origin loses no precision. There is no input or output and no thread. Without the default feature `std` the crate needs only `alloc`.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
@@ -31,11 +30,12 @@ mod metrics;
 mod pinhole;
 mod ray;
 mod slab;
+mod texels;
 
 pub use axis::SampledAxis;
 pub use cell::Cell;
 pub use color::{linear_from_srgb, srgb_from_linear, srgb8_from_linear};
-pub use cube::{CubeCoord, cube_coord, cube_direction};
+pub use cube::{CubeCoord, CubeMap, cube_coord, cube_direction};
 pub use error::GeometryError;
 pub use face::Face;
 pub use geometry::{IndexedRay, LightFieldGeometry, PlanePlacement};
@@ -45,3 +45,4 @@ pub use metrics::{ImageError, image_error};
 pub use pinhole::Pinhole;
 pub use ray::{Ray, normalized, reflect};
 pub use slab::{CameraTap, Slab, SlabCoord};
+pub use texels::SlabTexels;

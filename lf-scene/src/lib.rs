@@ -1,1 +1,33 @@
-//! x
+//! Scenes, a ray tracer and the capture of environment light fields: the independent oracle of the other crates.
+//!
+//! A [`Scene`] is triangles with textured diffuse or emissive materials and simple lights, made in code
+//! ([`museum`]) or read from glTF ([`import_gltf`]). A [`Tracer`] answers one ray at a time. From it come the slabs
+//! ([`capture_slabs`]), the environment map ([`capture_cube`]) and the reference pictures ([`reference`]).
+//! [`reflectors`] holds the objects to look at.
+//!
+//! Shading is direct light only: point lights and a sun with hard shadows over an ambient term. World space is glTF's:
+//! right-handed, +Y up, metres; colour is linear Rec. 709.
+
+#![forbid(unsafe_code)]
+
+mod bvh;
+mod capture;
+mod error;
+mod free_space;
+mod import;
+mod light;
+mod material;
+pub mod museum;
+pub mod reference;
+pub mod reflectors;
+mod scene;
+mod tracer;
+
+pub use capture::{Capture, capture_cube, capture_slabs};
+pub use error::SceneError;
+pub use free_space::{FreeSpace, find_free_space, free_radius};
+pub use import::{Imported, import_gltf, import_obj};
+pub use light::{Light, Lighting};
+pub use material::{Material, Pattern, Surface, Texture};
+pub use scene::{Scene, SceneBuilder, Vertex};
+pub use tracer::{Tracer, Traced};

@@ -1,0 +1,74 @@
+//! Palette arithmetic and decoding; the encoder measures its error against the same palette.
+
+use super::Texel;
+
+const TRANSPARENT_BLACK: Texel = [0, 0, 0, 0];
+
+/// Widens a 5-bit level to 8 bits by bit replication, so 0 ↦ 0 and 31 ↦ 255.
+pub(super) const fn expand5(level: u8) -> u8 {
+    level << 3 | level >> 2
+}
+
+/// Widens a 6-bit level to 8 bits by bit replication, so 0 ↦ 0 and 63 ↦ 255.
+pub(super) const fn expand6(level: u8) -> u8 {
+    level << 2 | level >> 4
+}
+
+/// One channel of the entry a third of the way from `near` to `far`: `⌊(2·near + far) / 3⌋`.
+///
+/// 8-bit operands, integer division, no rounding term.
+pub(super) const fn third(near: u8, far: u8) -> u8 {
+    ((2 * near as u16 + far as u16) / 3) as u8
+}
+
+const fn half(a: u8, b: u8) -> u8 {
+    ((a as u16 + b as u16) / 2) as u8
+}
+
+/// Splits an endpoint `rrrrrggg gggbbbbb` and widens each channel to 8 bits.
+pub(super) const fn unpack565(color: u16) -> [u8; 3] {
+    let red = (color >> 11) as u8;
+    let green = (color >> 5 & 0x3f) as u8;
+    let blue = (color & 0x1f) as u8;
+    [expand5(red), expand6(green), expand5(blue)]
+}
+
+const fn opaque([r, g, b]: [u8; 3]) -> Texel {
+    [r, g, b, 255]
+}
+
+/// The four colours that the indices 0 to 3 select.
+fn palette(color0: u16, color1: u16) -> [Texel; 4] {
+    let (a, b) = (unpack565(color0), unpack565(color1));
+    let mix = |f: fn(u8, u8) -> u8, a: [u8; 3], b: [u8; 3]| opaque([f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])]);
+    if color0 > color1 {
+        [opaque(a), opaque(b), mix(third, a, b), mix(third, b, a)]
+    } else {
+        [opaque(a), opaque(b), mix(half, a, b), TRANSPARENT_BLACK]
+    }
+}
+
+/// Splits a block into its palette and its 32 index bits, texel 0 lowest.
+fn split(block: &[u8; 8]) -> ([Texel; 4], u32) {
+    let &[a, b, c, d, e, f, g, h] = block;
+    let colors = palette(u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]));
+    (colors, u32::from_le_bytes([e, f, g, h]))
+}
+
+/// Decodes one block to 4×4 texels in row-major order.
+///
+/// Every bit pattern is a valid block. With `color0 > color1` all texels are opaque; otherwise index 2 is the
+/// midpoint of the endpoints and index 3 is transparent black, `[0, 0, 0, 0]`.
+pub fn decode_block(block: &[u8; 8]) -> [Texel; 16] {
+    let (colors, indices) = split(block);
+    std::array::from_fn(|i| colors[(indices >> (2 * i) & 3) as usize])
+}
+
+/// Decodes the texel in column `x` and row `y` of a block, as [`decode_block`] would.
+///
+/// Only the two low bits of `x` and `y` are used, so image coordinates can be passed as they are.
+pub fn decode_texel(block: &[u8; 8], x: usize, y: usize) -> Texel {
+    let (colors, indices) = split(block);
+    let shift = 2 * (4 * (y & 3) + (x & 3));
+    colors[(indices >> shift & 3) as usize]
+}

@@ -1,0 +1,94 @@
+//! Reference pictures: what a perfect mirror in the scene looks like.
+//!
+//! One ray through each pixel's centre; where it meets the reflector, its mirror image is traced through the scene
+//! without the reflector. This is what the image-based methods approximate, ray by ray: a reflection of the
+//! surroundings, without the reflector's image in itself.
+
+use glam::Vec3;
+use lf_math::{Cell, Image, Pinhole, Ray, TriangleMesh, normalized, reflect};
+use rayon::prelude::*;
+
+use crate::bvh::{TriangleBvh, interpolate};
+use crate::capture::trace_in_cell_space;
+use crate::tracer::Tracer;
+
+/// A reflective mesh that can be hit by rays. Cell space.
+pub struct Mirror {
+    mesh: TriangleMesh,
+    bvh: TriangleBvh,
+}
+
+/// A reference picture.
+#[derive(Debug, Clone)]
+pub struct Reference {
+    /// Radiance in linear RGB: the reflection where the reflector is, the scene behind it elsewhere.
+    pub radiance: Image<Vec3>,
+    /// Where the reflector is.
+    pub mask: Image<bool>,
+}
+
+impl Mirror {
+    /// Makes a mesh, given in cell space, ready for rays.
+    #[must_use]
+    pub fn new(mesh: TriangleMesh) -> Self {
+        let corners = mesh.triangles().iter().map(|t| t.map(|i| mesh.positions()[i as usize]));
+        let bvh = TriangleBvh::new(corners);
+        Self { mesh, bvh }
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    /// The mirrored ray of one that meets the mesh, about the interpolated normal (Eq. 2 of the paper).
+    #[must_use]
+    pub fn reflected(&self, ray: &Ray) -> Option<Ray> {
+        let hit = self.bvh.nearest(ray.origin, ray.direction)?;
+        let normals = self.mesh.triangles()[hit.triangle].map(|i| self.mesh.normals()[i as usize]);
+        let normal = normalized(interpolate(normals, hit.shares)).unwrap_or(hit.normal);
+        Some(Ray { origin: ray.at(hit.t), direction: reflect(ray.direction, normal) })
+    }
+}
+
+/// Traces the picture that `camera` sees of `mirror` in the scene around `cell`, on all threads.
+#[must_use]
+pub fn render(tracer: &Tracer, cell: &Cell, mirror: &Mirror, camera: &Pinhole) -> Reference {
+    let (width, height) = (camera.width(), camera.height());
+    let pixel = |index: u32| {
+        let ray = camera.ray(index % width, index / width);
+        let reflected = mirror.reflected(&ray);
+        let traced = trace_in_cell_space(tracer, cell, reflected.as_ref().unwrap_or(&ray));
+        (traced.radiance, reflected.is_some())
+    };
+    let (radiance, mask): (Vec<_>, Vec<_>) = (0..width * height).into_par_iter().map(pixel).unzip();
+    let mut reference = Reference { radiance: Image::filled(width, height, Vec3::ZERO), mask: Image::filled(width, height, false) };
+    reference.radiance.texels_mut().copy_from_slice(&radiance);
+    reference.mask.texels_mut().copy_from_slice(&mask);
+    reference
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reflectors;
+
+    #[test]
+    fn a_fine_sphere_reflects_like_the_exact_one() {
+        let mirror = Mirror::new(reflectors::sphere(6).fitted(Vec3::ZERO, 0.4));
+        let mut worst = 0.0f32;
+        for i in 0..2000 {
+            let angle = 2.399_963_2 * i as f32;
+            let offset = 0.39 * (i as f32 / 2000.0).sqrt();
+            let ray = Ray { origin: Vec3::new(offset * angle.cos(), offset * angle.sin(), 2.0), direction: Vec3::NEG_Z };
+            let reflected = mirror.reflected(&ray).expect("inside the silhouette");
+            // Closed form: the normal of a parallel ray at this offset.
+            let n = Vec3::new(ray.origin.x, ray.origin.y, (0.16 - offset * offset).sqrt()) / 0.4;
+            worst = worst.max(reflected.direction.angle_between(reflect(ray.direction, n)));
+        }
+        assert!(worst < 0.02, "{worst} rad");
+        let beside = Ray { origin: Vec3::new(0.41, 0.0, 2.0), direction: Vec3::NEG_Z };
+        assert!(mirror.reflected(&beside).is_none());
+    }
+}
