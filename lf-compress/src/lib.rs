@@ -15,6 +15,8 @@ pub mod volume;
 mod zstd_tile;
 
 pub use packed::{PackError, PackedLightField};
+/// The container crate, whose types the packed light field speaks.
+pub use lf_format as format;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

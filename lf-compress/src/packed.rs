@@ -79,7 +79,7 @@ impl PackedLightField {
             (0..tiling.tile_count()).into_par_iter().map(tile).collect::<Result<Vec<_>, _>>()
         };
         for (slab, texels) in slabs.iter().zip(texels) {
-            SlabTexels::check(slab, texels)?;
+            texels.check(slab)?;
         }
         let tiles = tilings.iter().zip(texels).map(encode_slab).collect::<Result<_, _>>()?;
         Self::assemble(geometry, tilings, tiles)

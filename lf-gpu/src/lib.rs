@@ -1,1 +1,30 @@
-//! x
+//! The GPU renderer, by `wgpu`: reflections from light field slabs and environment maps, offscreen.
+//!
+//! [`Gpu::new`] opens an adapter; [`SlabTexture`] uploads a packed light field without decoding it, as a volume texture
+//! of BC1 blocks where the device samples that, else as a 2D array, else as plain RGBA ([`Storage`]); a
+//! [`ReflectionPass`] draws a [`MirrorMesh`] into a [`Target`]. One pass, four hardware-bilinear fetches a pixel, for the
+//! slabs (Figs. 6 and 8 of Yu, Yang & McMillan); one fetch for the environment map.
+//!
+//! Every shader has a readable twin in `lf-ibr`. Cost is the covered pixels times the fetches; the scene and, but for its
+//! vertices, the mirror do not matter. Windows and animation are not this crate's job.
+
+#![forbid(unsafe_code)]
+
+mod error;
+mod gpu;
+mod pass;
+mod probe;
+mod storage;
+mod target;
+mod uniforms;
+
+pub use error::GpuError;
+pub use gpu::{Gpu, adapter_lines};
+pub use pass::{MirrorMesh, ReflectionPass};
+pub use probe::{Probe, read_probes};
+pub use storage::{SlabTexture, Storage};
+pub use target::Target;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,1 +1,26 @@
-//! x
+//! CPU renderers of reflections from images: the readable twins of the GPU passes.
+//!
+//! A frame is made in two steps, as on the GPU. [`GBuffer::rasterize`] finds the reflector's position and normal at
+//! each pixel (Fig. 5a and b of Yu, Yang & McMillan). [`reflect_frame`] mirrors the view ray there and asks an
+//! [`Environment`] for the light along it:
+//!
+//! * [`SlabField`]: light field slabs, four bilinear fetches blended (Figs. 6 and 8 of the paper);
+//! * [`CubeField`]: an environment map, looked up by direction alone.
+//!
+//! Colours are interpolated as they are stored, sRGB-encoded, as the paper's hardware did and as the GPU passes do.
+
+#![forbid(unsafe_code)]
+
+mod cube;
+mod frame;
+mod gbuffer;
+mod slabs;
+
+pub use cube::CubeField;
+pub use frame::{Environment, reflect_frame};
+pub use gbuffer::{Fragment, GBuffer};
+pub use slabs::SlabField;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -30,6 +30,21 @@ impl SlabTexels {
         Ok(Self { cameras, resolution, texels })
     }
 
+    /// Checks that the texels are those of a slab with the numbers of cameras and texels of `slab`.
+    ///
+    /// # Errors
+    /// If any of the four numbers differs.
+    pub fn check(&self, slab: &Slab) -> Result<(), GeometryError> {
+        let sizes = [(self.cameras, slab.cameras()), (self.resolution, slab.resolution())];
+        for (have, want) in sizes.into_iter().flat_map(|(have, want)| have.into_iter().zip(want)) {
+            if have != want {
+                let (len, expected) = (have as usize, want as usize);
+                return Err(GeometryError::Length { what: "axis of slab texels", len, expected });
+            }
+        }
+        Ok(())
+    }
+
     /// Number of cameras along s and t.
     #[must_use]
     pub fn cameras(&self) -> [u32; 2] {

@@ -1,1 +1,39 @@
-//! x
+//! Error against run time: how each method that draws a reflection is measured, compared and reported.
+//!
+//! [`measure`] times frames and keeps every sample, so that a [`Timing`] gives the median *and* the spread. A
+//! [`MethodResult`] joins that time to the error of each eye and to the bytes the method needs; a [`Report`] holds the
+//! results of one run with everything a reader needs to judge and to repeat it: machine, scene, command line. It is
+//! written as JSON ([`Report::to_json`], described field by field in `report.schema.json`), as one self-contained HTML
+//! page ([`Report::to_html`]), as a plot ([`Report::error_time_svg`]) and as a Markdown table.
+//!
+//! A report compares methods on *the same frames*: errors of different reflectors are never set against each other,
+//! and [`pareto_front`] is taken for each reflector by itself. Whoever fills the report in sees to it that the frames
+//! are the same; this crate renders nothing and reads no files but `/proc/cpuinfo` (in [`cpu_name`]).
+
+#![forbid(unsafe_code)]
+
+mod error;
+mod html;
+mod labels;
+mod machine;
+mod pareto;
+mod plot;
+mod report;
+mod result;
+mod timing;
+mod units;
+
+#[cfg(test)]
+mod sample;
+
+pub use error::ReportError;
+pub use machine::{Machine, cpu_name};
+pub use pareto::pareto_front;
+pub use report::{Figure, Report};
+pub use result::{BASELINE_METHOD, EyeError, MethodResult};
+pub use timing::{Timing, measure};
+
+/// Compiles the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -4,14 +4,9 @@ use super::Texel;
 
 const TRANSPARENT_BLACK: Texel = [0, 0, 0, 0];
 
-/// Widens a 5-bit level to 8 bits by bit replication, so 0 ↦ 0 and 31 ↦ 255.
-pub(super) const fn expand5(level: u8) -> u8 {
-    level << 3 | level >> 2
-}
-
-/// Widens a 6-bit level to 8 bits by bit replication, so 0 ↦ 0 and 63 ↦ 255.
-pub(super) const fn expand6(level: u8) -> u8 {
-    level << 2 | level >> 4
+/// Widens a level of `BITS` (5 or 6) bits to 8 by bit replication, so the extremes map to 0 and 255.
+pub(super) const fn expand<const BITS: u32>(level: u8) -> u8 {
+    level << (8 - BITS) | level >> (2 * BITS - 8)
 }
 
 /// One channel of the entry a third of the way from `near` to `far`: `⌊(2·near + far) / 3⌋`.
@@ -30,7 +25,7 @@ pub(super) const fn unpack565(color: u16) -> [u8; 3] {
     let red = (color >> 11) as u8;
     let green = (color >> 5 & 0x3f) as u8;
     let blue = (color & 0x1f) as u8;
-    [expand5(red), expand6(green), expand5(blue)]
+    [expand::<5>(red), expand::<6>(green), expand::<5>(blue)]
 }
 
 const fn opaque([r, g, b]: [u8; 3]) -> Texel {

@@ -1,0 +1,115 @@
+//! Packing and its inverse, over every sample.
+
+use std::collections::HashSet;
+
+use glam::{DVec3, Vec3};
+use lf_compress::volume::{Sample, VolumeLayout};
+use lf_math::{Cell, Face, LightFieldGeometry, PlanePlacement, SampledAxis, Slab};
+
+fn cell() -> Cell {
+    Cell::new(DVec3::ZERO, Vec3::new(0.5, 0.5, 0.5)).expect("a cell")
+}
+
+fn uniform(cameras: u32, resolution: u32) -> LightFieldGeometry {
+    LightFieldGeometry::around(cell(), PlanePlacement::CellFaces, cameras, resolution).expect("a light field")
+}
+
+/// Slabs that differ in everything, none of it a power of two.
+fn uneven() -> LightFieldGeometry {
+    let axis = |count| SampledAxis::spanning(-1.0, 1.0, count).expect("an axis");
+    let slab = |face, [s, t]: [u32; 2], [u, v]: [u32; 2]| {
+        Slab::new(face, 0.5, [axis(s), axis(t)], [axis(u), axis(v)], None).expect("a slab")
+    };
+    let slabs = vec![
+        slab(Face::PosX, [3, 5], [7, 2]),
+        slab(Face::NegY, [1, 1], [1, 1]),
+        slab(Face::PosZ, [2, 33], [129, 65]),
+        slab(Face::NegZ, [3, 1], [600, 5]),
+    ];
+    LightFieldGeometry::new(cell(), slabs).expect("a light field")
+}
+
+fn samples(geometry: &LightFieldGeometry) -> impl Iterator<Item = Sample> {
+    geometry.slabs().iter().enumerate().flat_map(|(slab, part)| {
+        let ([cameras_s, cameras_t], [width, height]) = (part.cameras(), part.resolution());
+        let cameras = (0..cameras_t).flat_map(move |t| (0..cameras_s).map(move |s| [s, t]));
+        cameras.flat_map(move |camera| {
+            (0..height).flat_map(move |v| (0..width).map(move |u| Sample { slab, camera, texel: [u, v] }))
+        })
+    })
+}
+
+#[test]
+fn the_papers_volume() {
+    let layout = VolumeLayout::new(&uniform(32, 128)).expect("fits");
+    assert_eq!(layout.size(), [1024, 1024, 128]);
+    let bc1_bytes: u64 = layout.size().map(u64::from).iter().product::<u64>() / 2;
+    assert_eq!(bc1_bytes, 64 << 20);
+    for (number, slab) in (0..).zip(layout.slabs()) {
+        assert_eq!((slab.cameras_per_slice(), slab.groups(), slab.slices()), ([8, 8], [4, 4], 16));
+        assert_eq!(slab.first_slice(), 16 * number);
+    }
+    // Fig. 8: slice idx.y·4 + idx.x, image (s mod 8, t mod 8).
+    let sample = Sample { slab: 2, camera: [13, 30], texel: [5, 127] };
+    assert_eq!(layout.texel(&sample), Some([5 * 128 + 5, 6 * 128 + 127, 2 * 16 + 3 * 4 + 1]));
+}
+
+#[test]
+fn every_sample_of_the_papers_volume_comes_back() {
+    let geometry = uniform(32, 128);
+    let layout = VolumeLayout::new(&geometry).expect("fits");
+    for sample in samples(&geometry) {
+        let texel = layout.texel(&sample).expect("inside");
+        assert_eq!(layout.sample(texel), Some(sample));
+    }
+}
+
+#[test]
+fn every_sample_has_a_texel_of_its_own_and_no_block_two_cameras() {
+    for geometry in [uniform(3, 6), uniform(16, 8), uneven()] {
+        let layout = VolumeLayout::new(&geometry).expect("fits");
+        assert!(layout.size().iter().all(|n| n.is_power_of_two()));
+        let mut taken = HashSet::new();
+        let mut blocks = std::collections::HashMap::new();
+        for sample in samples(&geometry) {
+            let texel = layout.texel(&sample).expect("inside");
+            assert!((0..3).all(|i| texel[i] < layout.size()[i]), "{texel:?}");
+            assert!(taken.insert(texel), "two samples at {texel:?}");
+            assert_eq!(layout.sample(texel), Some(sample));
+            let owner = (sample.slab, sample.camera);
+            let block = [texel[0] / 4, texel[1] / 4, texel[2]];
+            assert_eq!(*blocks.entry(block).or_insert(owner), owner, "a block of two cameras");
+        }
+    }
+}
+
+#[test]
+fn texels_without_a_sample_have_none() {
+    let geometry = uneven();
+    let layout = VolumeLayout::new(&geometry).expect("fits");
+    let [width, height, depth] = layout.size();
+    let mut found = 0;
+    for z in 0..depth {
+        for y in 0..height.min(64) {
+            for x in 0..width {
+                if let Some(sample) = layout.sample([x, y, z]) {
+                    assert_eq!(layout.texel(&sample), Some([x, y, z]));
+                    found += 1;
+                }
+            }
+        }
+    }
+    assert!(found > 0);
+    assert_eq!(layout.sample([0, 0, depth]), None);
+    assert_eq!(layout.sample([u32::MAX; 3]), None);
+    assert_eq!(layout.texel(&Sample { slab: 0, camera: [3, 0], texel: [0, 0] }), None);
+    assert_eq!(layout.texel(&Sample { slab: 9, camera: [0, 0], texel: [0, 0] }), None);
+}
+
+#[test]
+fn volumes_past_the_coordinates_are_refused() {
+    let axis = |count| SampledAxis::new(-1.0, 1e-9, count).expect("an axis");
+    let huge = Slab::new(Face::PosX, 0.5, [axis(u32::MAX); 2], [axis(u32::MAX); 2], None).expect("a slab");
+    let geometry = LightFieldGeometry::new(cell(), vec![huge]).expect("a light field");
+    assert!(VolumeLayout::new(&geometry).is_err());
+}

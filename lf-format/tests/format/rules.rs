@@ -1,0 +1,255 @@
+//! One test for each rule of the specification that checksums do not cover.
+
+use lf_format::{FormatError, Metadata, Packing, SlabTiling, TexelEncoding, Writer};
+
+use crate::assemble::{Chunk, File, assert_breaks, parse, refusal, reseal, smallest_writer};
+
+#[track_caller]
+fn assert_unsupported(bytes: &[u8], expected: &str) {
+    match refusal(bytes) {
+        FormatError::Unsupported { clause, .. } if clause == expected => {}
+        other => panic!("expected something unsupported by {expected}, got: {other}"),
+    }
+}
+
+/// The smallest file with one of its bytes changed, and right checksums of header and directory.
+fn with_byte(at: usize, value: u8) -> Vec<u8> {
+    let mut file = File::smallest().to_bytes();
+    file[at] = value;
+    reseal(&mut file);
+    file
+}
+
+/// The smallest file with a change to its geometry chunk, and right checksums.
+fn with_geometry(at: usize, bytes: &[u8]) -> Vec<u8> {
+    let mut file = File::smallest();
+    file.chunks[0].payload[at..at + bytes.len()].copy_from_slice(bytes);
+    file.to_bytes()
+}
+
+#[test]
+fn versions() {
+    let version = |major, minor| File { version: (major, minor), ..File::smallest() }.to_bytes();
+    assert_eq!(parse(&version(1, 9)).unwrap().version(), (1, 9));
+    assert_unsupported(&version(2, 0), "§3.2");
+    assert_unsupported(&version(0, 1), "§3.2");
+}
+
+#[test]
+fn header_fields() {
+    assert_breaks(&with_byte(24, 128), "§3.4");
+    assert_breaks(&with_byte(32, 7), "§3.5");
+    assert_breaks(&with_byte(36, 1), "§3.6");
+    assert_breaks(&with_byte(55, 1), "§3.6");
+    let mut file = File::smallest().to_bytes();
+    file[70] ^= 1;
+    assert_breaks(&file, "§3.7");
+    file[60] ^= 1;
+    assert_breaks(&file, "§3.8");
+}
+
+#[test]
+fn unknown_chunks() {
+    assert_unsupported(&File::with(Chunk::new(b"NEWC", 1, vec![1])).to_bytes(), "§4.2");
+    for flags in [0, 2] {
+        let bytes = File::with(Chunk { slab: 9, tile: 9, ..Chunk::new(b"note", flags, vec![1, 2, 3]) }).to_bytes();
+        let file = parse(&bytes).unwrap();
+        let chunk = file.chunks().nth(1).unwrap();
+        assert_eq!((chunk.tag.to_string().as_str(), chunk.slab, chunk.stored_len), ("note", 9, 3));
+        assert_eq!((chunk.critical, chunk.safe_to_copy), (false, flags == 2));
+        assert!(file.tile(0, 0).is_some());
+    }
+}
+
+#[test]
+fn directory_fields() {
+    let payload = vec![1, 2, 3];
+    let refused = |chunk: Chunk, clause| assert_breaks(&File::with(chunk).to_bytes(), clause);
+    refused(Chunk::new(b"a b ", 0, payload.clone()), "§4.1");
+    refused(Chunk::new(b"note", 3, payload.clone()), "§4.2");
+    refused(Chunk::new(b"note", 4, payload.clone()), "§4.2");
+    refused(Chunk::new(b"META", 1, payload.clone()), "§4.2");
+    refused(Chunk { slab: 1, ..Chunk::new(b"META", 2, payload.clone()) }, "§4.4");
+    refused(Chunk { packing: 1, ..Chunk::new(b"META", 2, payload.clone()) }, "§4.4");
+    refused(Chunk::new(b"note", 0, vec![]), "§4.6");
+    refused(Chunk { raw_len: 4, ..Chunk::new(b"note", 0, payload.clone()) }, "§4.7");
+    refused(Chunk::new(b"TILE", 1, payload.clone()), "§4.4");
+    refused(Chunk { tile: 1, ..Chunk::new(b"TILE", 1, payload.clone()) }, "§4.10");
+    assert_unsupported(&File::with(Chunk { packing: 2, ..Chunk::new(b"TILE", 1, payload) }).to_bytes(), "§4.3");
+    assert_breaks(&with_byte(71, 1), "§4.9");
+}
+
+#[test]
+fn duplicates() {
+    let mut file = File::with(Chunk::new(b"note", 0, vec![1]));
+    file.chunks.push(Chunk::new(b"note", 0, vec![2]));
+    assert_breaks(&file.to_bytes(), "§4.4");
+}
+
+#[test]
+fn placement() {
+    // The second chunk's offset, one alignment too far.
+    assert_breaks(&with_byte(112 + 16, 128), "§4.5");
+    // A hole is not zero.
+    assert_breaks(&with_byte(319, 1), "§4.5");
+    // A declared chunk reaches past the end of the file.
+    let mut file = File::smallest().to_bytes();
+    file[112 + 24] = 9;
+    file[112 + 32] = 9;
+    reseal(&mut file);
+    assert_breaks(&file, "§4.6");
+    // Padding after the last chunk.
+    let mut file = File::smallest().to_bytes();
+    file.resize(384, 0);
+    file[16..24].copy_from_slice(&384u64.to_le_bytes());
+    reseal(&mut file);
+    assert_breaks(&file, "§4.5");
+}
+
+#[test]
+fn order_and_presence() {
+    let mut file = File::smallest();
+    file.chunks.swap(0, 1);
+    assert_breaks(&file.to_bytes(), "§4.10");
+    let no_chunks = File { chunks: vec![], ..File::smallest() };
+    assert_breaks(&no_chunks.to_bytes(), "§4.10");
+    let mut no_tile = File::smallest();
+    no_tile.chunks.pop();
+    assert_breaks(&no_tile.to_bytes(), "§4.10");
+    let mut one_more = File::smallest();
+    one_more.chunks.push(Chunk { tile: 1, ..one_more.chunks[1].clone() });
+    assert_breaks(&one_more.to_bytes(), "§4.10");
+}
+
+#[test]
+fn raw_length_follows_from_the_geometry() {
+    let mut file = File::smallest();
+    file.chunks[1] = Chunk { packing: 1, raw_len: 16, ..Chunk::new(b"TILE", 1, vec![1, 2, 3]) };
+    assert_breaks(&file.to_bytes(), "§4.7");
+    file.chunks[1].raw_len = 8;
+    let bytes = file.to_bytes();
+    let tile = parse(&bytes).unwrap().tile(0, 0).unwrap();
+    assert_eq!((tile.packing, tile.bytes, tile.raw_len), (Packing::Zstd, &[1u8, 2, 3][..], 8));
+}
+
+#[test]
+fn geometry_fields() {
+    let nan = f32::NAN.to_le_bytes();
+    let negative_zero = (-0.0f32).to_le_bytes();
+    assert_breaks(&with_geometry(0, &f64::INFINITY.to_le_bytes()), "§5.1");
+    assert_breaks(&with_geometry(24, &negative_zero), "§5.1");
+    assert_breaks(&with_geometry(36, &[0]), "§5.2");
+    assert_breaks(&with_geometry(36, &[7]), "§5.2");
+    assert_breaks(&with_geometry(36, &[2]), "§5");
+    assert_breaks(&with_geometry(40, &[6]), "§5.3");
+    assert_unsupported(&with_geometry(41, &[0]), "§5.4");
+    assert_unsupported(&with_geometry(42, &[1]), "§5.5");
+    assert_breaks(&with_geometry(43, &[1]), "§5.10");
+    assert_breaks(&with_geometry(44, &nan), "§5.6");
+    for axis in [48, 60, 72, 84] {
+        assert_breaks(&with_geometry(axis, &nan), "§5.7");
+        assert_breaks(&with_geometry(axis + 4, &negative_zero), "§5.7");
+        assert_breaks(&with_geometry(axis + 8, &[0; 4]), "§5.7");
+    }
+    assert_breaks(&with_geometry(96, &negative_zero), "§5.8");
+    assert_breaks(&with_geometry(96, &(-1.0f32).to_le_bytes()), "§5.8");
+    assert_breaks(&with_geometry(100, &[0; 4]), "§5.9");
+    assert_breaks(&with_geometry(104, &[0xFF; 4]), "§5.9");
+    let mut long = File::smallest();
+    long.chunks[0] = Chunk::new(b"GEOM", 1, [&long.chunks[0].payload[..], &[0]].concat());
+    assert_breaks(&long.to_bytes(), "§5");
+}
+
+#[test]
+fn slabs_are_in_the_order_of_their_faces() {
+    for faces in [[4, 4], [4, 1]] {
+        let mut geometry = File::smallest().chunks[0].payload.clone();
+        let slab = geometry[40..].to_vec();
+        geometry.extend(slab);
+        geometry[36] = 2;
+        (geometry[40], geometry[108]) = (faces[0], faces[1]);
+        let mut file = File::smallest();
+        file.chunks[0] = Chunk::new(b"GEOM", 1, geometry);
+        assert_breaks(&file.to_bytes(), "§5.3");
+    }
+}
+
+#[test]
+fn a_focal_depth_of_zero_is_none() {
+    let bytes = with_geometry(96, &2.5f32.to_le_bytes());
+    assert_eq!(parse(&bytes).unwrap().geometry().slabs()[0].focal_depth(), Some(2.5));
+    let bytes = File::smallest().to_bytes();
+    assert_eq!(parse(&bytes).unwrap().geometry().slabs()[0].focal_depth(), None);
+}
+
+/// A metadata chunk of raw keys and values.
+fn metadata(pairs: &[(&[u8], &[u8])]) -> Vec<u8> {
+    let mut payload = (pairs.len() as u32).to_le_bytes().to_vec();
+    for (key, value) in pairs {
+        payload.extend((key.len() as u16).to_le_bytes());
+        payload.extend((value.len() as u32).to_le_bytes());
+        payload.extend(*key);
+        payload.extend(*value);
+    }
+    File::with(Chunk::new(b"META", 2, payload)).to_bytes()
+}
+
+#[test]
+fn metadata_fields() {
+    let bytes = metadata(&[(b"a", b""), (b"b", "§".as_bytes())]);
+    assert_eq!(parse(&bytes).unwrap().metadata().get("b"), Some("§"));
+    assert_breaks(&metadata(&[]), "§6.1");
+    assert_breaks(&metadata(&[(b"b", b""), (b"a", b"")]), "§6.2");
+    assert_breaks(&metadata(&[(b"a", b""), (b"a", b"")]), "§6.2");
+    for key in [&b""[..], b"A", b"a b", &[b'a'; 65], b"\xFF"] {
+        assert_breaks(&metadata(&[(key, b"")]), "§6.3");
+    }
+    for value in [&b"\0"[..], b"\xFF", &[b'x'; (64 << 10) + 1]] {
+        assert_breaks(&metadata(&[(b"a", value)]), "§6.4");
+    }
+    for count in [2u32, u32::MAX] {
+        let payload = [&count.to_le_bytes()[..], &[1, 0, 0, 0, 0, 0, b'a']].concat();
+        assert_breaks(&File::with(Chunk::new(b"META", 2, payload)).to_bytes(), "§6");
+    }
+    let overlong = [&1u32.to_le_bytes()[..], &[1, 0, 0xFF, 0xFF, 0xFF, 0xFF, b'a']].concat();
+    assert_breaks(&File::with(Chunk::new(b"META", 2, overlong)).to_bytes(), "§6");
+}
+
+#[track_caller]
+fn assert_argument<T>(result: &Result<T, FormatError>) {
+    assert!(matches!(result, Err(FormatError::InvalidArgument { .. })));
+}
+
+#[test]
+fn the_writer_refuses_what_a_reader_would() {
+    let bytes = File::smallest().to_bytes();
+    let file = parse(&bytes).unwrap();
+    let (geometry, slab) = (file.geometry(), file.geometry().slabs()[0]);
+    let tiling = file.tilings()[0];
+    assert_argument(&SlabTiling::new(&slab, TexelEncoding::Bc1, [0, 1]));
+    assert_argument(&SlabTiling::new(&slab, TexelEncoding::Bc1, [u32::MAX, 1]));
+    assert_argument(&Writer::new(geometry.clone(), vec![], Metadata::new()));
+    let wider = lf_math::SampledAxis::new(0.0, 1.0, 9).unwrap();
+    let other = lf_math::Slab::new(slab.face(), 0.5, slab.st(), [wider; 2], None).unwrap();
+    let wrong = SlabTiling::new(&other, TexelEncoding::Bc1, [1, 1]).unwrap();
+    assert_argument(&Writer::new(geometry.clone(), vec![wrong], Metadata::new()));
+
+    let mut writer = Writer::new(geometry.clone(), vec![tiling], Metadata::new()).unwrap();
+    assert_argument(&writer.to_bytes());
+    assert_argument(&writer.add_tile(1, 0, Packing::None, vec![0; 8]));
+    assert_argument(&writer.add_tile(0, 1, Packing::None, vec![0; 8]));
+    assert_argument(&writer.add_tile(0, 0, Packing::None, vec![0; 7]));
+    assert_argument(&writer.add_tile(0, 0, Packing::Zstd, vec![]));
+    assert_argument(&smallest_writer().add_tile(0, 0, Packing::None, vec![0; 8]));
+    assert_argument(&Metadata::new().insert("Key", "value"));
+    assert_argument(&Metadata::new().insert("key", "a\0b"));
+}
+
+#[test]
+fn the_writer_keeps_to_the_default_limits() {
+    let bytes = File::smallest().to_bytes();
+    let geometry = parse(&bytes).unwrap().geometry().clone();
+    let huge = SlabTiling::new(&geometry.slabs()[0], TexelEncoding::Rgba8, [1 << 15, 1 << 15]).unwrap();
+    let error = Writer::new(geometry, vec![huge], Metadata::new()).unwrap_err();
+    assert!(matches!(error, FormatError::LimitExceeded { .. }), "{error}");
+}

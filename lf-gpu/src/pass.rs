@@ -1,0 +1,236 @@
+//! The passes that draw a mirror.
+
+use glam::Vec3;
+use lf_compress::PackedLightField;
+use lf_math::{CubeMap, Pinhole, TriangleMesh};
+use wgpu::util::DeviceExt;
+
+use crate::error::GpuError;
+use crate::gpu::Gpu;
+use crate::storage::{SlabTexture, Storage};
+use crate::target::Target;
+use crate::uniforms::{FrameUniform, SlabsUniform};
+
+/// A reflective mesh on the device.
+pub struct MirrorMesh {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    index_count: u32,
+    /// A ball around the mesh: centre and radius, cell space.
+    ball: (Vec3, f32),
+}
+
+/// A pipeline with the environment it reflects.
+pub struct ReflectionPass {
+    pipeline: wgpu::RenderPipeline,
+    bindings: wgpu::BindGroup,
+    frame: wgpu::Buffer,
+}
+
+/// The whole shader: with slabs in the given storage, or with an environment map.
+pub(crate) fn shader_source(slabs: Option<Storage>, probe: bool) -> String {
+    let mut source = String::new();
+    match slabs {
+        None => source += include_str!("shaders/environment.wgsl"),
+        Some(storage) => {
+            source += include_str!("shaders/slabs.wgsl");
+            source += match storage {
+                Storage::Bc1Volume => include_str!("shaders/volume.wgsl"),
+                Storage::Bc1Array | Storage::Rgba8Array => include_str!("shaders/array.wgsl"),
+            };
+        }
+    }
+    source += include_str!("shaders/reflect.wgsl");
+    if probe {
+        source += &format!("const PROBES_PER_ROW = {}u;\n", crate::probe::PER_ROW);
+        source += include_str!("shaders/probe.wgsl");
+    }
+    source
+}
+
+/// Sampler of all passes: bilinear, clamped, no mip levels. Bilinear across depth too, where slices are met centrally.
+pub(crate) fn bilinear_sampler(gpu: &Gpu) -> wgpu::Sampler {
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("bilinear"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    })
+}
+
+/// A buffer with the given contents.
+pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+}
+
+impl MirrorMesh {
+    /// Uploads a mesh given in cell space.
+    ///
+    /// # Errors
+    /// If the device is out of memory.
+    pub fn new(gpu: &Gpu, mesh: &TriangleMesh) -> Result<Self, GpuError> {
+        let vertices: Vec<[Vec3; 2]> = mesh.positions().iter().copied().zip(mesh.normals().iter().copied()).map(Into::into).collect();
+        let (min, max) = mesh.bounds();
+        let ball = (0.5 * (min + max), 0.5 * (max - min).length());
+        gpu.checked("the mirror's buffers", || Self {
+            vertices: buffer(gpu, "vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
+            indices: buffer(gpu, "indices", bytemuck::cast_slice(mesh.triangles()), wgpu::BufferUsages::INDEX),
+            index_count: 3 * mesh.triangles().len() as u32,
+            ball,
+        })
+    }
+
+    /// A near plane in front of all but the closest thousandth of the mesh's reach.
+    fn near_plane(&self, eye: Vec3) -> f32 {
+        (1e-3 * ((self.ball.0 - eye).length() + self.ball.1)).max(f32::MIN_POSITIVE)
+    }
+}
+
+impl ReflectionPass {
+    /// Reflections from light field slabs: `field` gives the geometry of what `texture` holds.
+    ///
+    /// # Errors
+    /// If the device refuses the pipeline.
+    pub fn slabs(gpu: &Gpu, field: &PackedLightField, texture: &SlabTexture) -> Result<Self, GpuError> {
+        gpu.checked("the slab pipeline", || {
+            let slabs = SlabsUniform::new(field);
+            let uniform = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
+            let sampler = bilinear_sampler(gpu);
+            let resources = [
+                (1, uniform.as_entire_binding()),
+                (2, wgpu::BindingResource::Sampler(&sampler)),
+                (3, wgpu::BindingResource::TextureView(&texture.view)),
+            ];
+            Self::new(gpu, &shader_source(Some(texture.storage), false), resources)
+        })
+    }
+
+    /// Reflections from an environment map.
+    ///
+    /// # Errors
+    /// If the device refuses the cube texture or the pipeline.
+    pub fn environment(gpu: &Gpu, cube: &CubeMap) -> Result<Self, GpuError> {
+        gpu.checked("the environment pipeline", || {
+            let view = cube_texture(gpu, cube);
+            let sampler = bilinear_sampler(gpu);
+            let resources =
+                [(1, wgpu::BindingResource::TextureView(&view)), (2, wgpu::BindingResource::Sampler(&sampler))];
+            Self::new(gpu, &shader_source(None, false), resources)
+        })
+    }
+
+    fn new<'a>(
+        gpu: &Gpu,
+        source: &str,
+        resources: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>,
+    ) -> Self {
+        let pipeline = mirror_pipeline(gpu, source);
+        let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: size_of::<FrameUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }];
+        for (binding, resource) in resources {
+            entries.push(wgpu::BindGroupEntry { binding, resource });
+        }
+        let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("environment"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        Self { pipeline, bindings, frame }
+    }
+
+    /// Submits one frame: clears the target to transparent black and draws the mirror as `camera` sees it. The target
+    /// should have the camera's size. Returns at once; see [`Gpu::wait`] and [`Target::read`].
+    pub fn draw(&self, gpu: &Gpu, target: &Target, mesh: &MirrorMesh, camera: &Pinhole) {
+        let frame = FrameUniform::new(camera, mesh.near_plane(camera.eye()));
+        gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("mirror"),
+                color_attachments: &[Some(clear_color(&target.color))],
+                depth_stencil_attachment: Some(clear_depth(&target.depth)),
+                ..Default::default()
+            });
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.bindings, &[]);
+            pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+            pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..mesh.index_count, 0, 0..1);
+        }
+        gpu.queue.submit([encoder.finish()]);
+    }
+}
+
+pub(crate) fn clear_color(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
+    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+}
+
+fn clear_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard };
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
+}
+
+fn mirror_pipeline(gpu: &Gpu, source: &str) -> wgpu::RenderPipeline {
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("mirror"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+    let vertices = wgpu::VertexBufferLayout {
+        array_stride: size_of::<[Vec3; 2]>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &attributes,
+    };
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("mirror"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("mirror_vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[Some(vertices)],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: Target::DEPTH,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Less),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("mirror_fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(Target::COLOR.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn cube_texture(gpu: &Gpu, cube: &CubeMap) -> wgpu::TextureView {
+    let texels: Vec<[u8; 4]> = cube.faces().iter().flat_map(|face| face.texels()).copied().collect();
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("environment map"),
+        size: wgpu::Extent3d { width: cube.size(), height: cube.size(), depth_or_array_layers: 6 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    };
+    let order = wgpu::util::TextureDataOrder::LayerMajor;
+    let bytes = bytemuck::cast_slice(&texels);
+    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
+    let dimension = Some(wgpu::TextureViewDimension::Cube);
+    texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
+}

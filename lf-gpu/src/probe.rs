@@ -1,0 +1,108 @@
+//! Single samples read through the shader, for tests and tools.
+
+use glam::Vec2;
+use lf_compress::PackedLightField;
+use lf_math::Face;
+
+use crate::error::GpuError;
+use crate::gpu::Gpu;
+use crate::pass::{bilinear_sampler, buffer, clear_color, shader_source};
+use crate::storage::SlabTexture;
+use crate::target::Target;
+use crate::uniforms::{ProbeUniform, SlabsUniform};
+
+/// Probes in a row of the picture they are drawn into.
+pub(crate) const PER_ROW: u32 = 512;
+
+/// A bilinear fetch from one camera's image.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Probe {
+    /// The slab's face; it must be present in the light field.
+    pub face: Face,
+    /// Camera indices (s, t).
+    pub camera: [u32; 2],
+    /// Texel position (u, v) in index units, within the image.
+    pub uv: Vec2,
+}
+
+/// What the slab shader fetches for each probe, as 8-bit values, one pixel each.
+///
+/// # Errors
+/// If the device refuses the pass, or if there are more probes than its largest picture has pixels.
+pub fn read_probes(
+    gpu: &Gpu,
+    field: &PackedLightField,
+    texture: &SlabTexture,
+    probes: &[Probe],
+) -> Result<Vec<[u8; 4]>, GpuError> {
+    if probes.is_empty() {
+        return Ok(vec![]);
+    }
+    let rows = probes.len().div_ceil(PER_ROW as usize);
+    let height = u32::try_from(rows).unwrap_or(u32::MAX);
+    let target = Target::new(gpu, PER_ROW, height)?;
+    gpu.checked("the probe pass", || draw(gpu, field, texture, probes, &target))?;
+    let picture = target.read(gpu)?;
+    Ok(picture.texels()[..probes.len()].to_vec())
+}
+
+fn draw(gpu: &Gpu, field: &PackedLightField, texture: &SlabTexture, probes: &[Probe], target: &Target) {
+    let pipeline = pipeline(gpu, &shader_source(Some(texture.storage), true));
+    let raw = |p: &Probe| ProbeUniform { uv: p.uv, camera: p.camera, face: p.face.index().into(), padding: 0 };
+    let raw: Vec<_> = probes.iter().map(raw).collect();
+    let list = buffer(gpu, "probes", bytemuck::cast_slice(&raw), wgpu::BufferUsages::STORAGE);
+    let slabs = SlabsUniform::new(field);
+    let uniform = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
+    let sampler = bilinear_sampler(gpu);
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("probe"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            entry(1, uniform.as_entire_binding()),
+            entry(2, wgpu::BindingResource::Sampler(&sampler)),
+            entry(3, wgpu::BindingResource::TextureView(&texture.view)),
+            entry(4, list.as_entire_binding()),
+        ],
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("probe"),
+            color_attachments: &[Some(clear_color(&target.color))],
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &bindings, &[]);
+        pass.draw(0..3, 0..1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+}
+
+fn pipeline(gpu: &Gpu, source: &str) -> wgpu::RenderPipeline {
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("probe"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("probe"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("probe_vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("probe_fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(Target::COLOR.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

@@ -1,0 +1,28 @@
+// Reads single samples by their indices: one pixel each. For tests and tools.
+
+struct Probe {
+    // Real-valued texel indices (u, v).
+    uv: vec2f,
+    camera: vec2u,
+    face: u32,
+    padding: u32,
+}
+
+@group(0) @binding(4) var<storage, read> probes: array<Probe>;
+
+// One triangle that covers the target.
+@vertex
+fn probe_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
+    return vec4f(2.0 * corner - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn probe_fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+    let index = u32(pixel.y) * PROBES_PER_ROW + u32(pixel.x);
+    if index >= arrayLength(&probes) {
+        return vec4f(0.0);
+    }
+    let probe = probes[index];
+    return vec4f(fetch_camera(probe.face, probe.camera, probe.uv), 1.0);
+}

@@ -1,0 +1,191 @@
+//! A light field in a texture.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use lf_compress::PackedLightField;
+use lf_compress::bc1;
+use lf_compress::format::TexelEncoding;
+
+use crate::error::GpuError;
+use crate::gpu::Gpu;
+
+/// More texture bytes than this are refused: some drivers abort the program instead of reporting that memory is out.
+const MAX_TEXTURE_BYTES: u64 = 4 << 30;
+
+/// How the packed volume lies in device memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Storage {
+    /// BC1 blocks in a 3D texture, as in the paper. Needs `TEXTURE_COMPRESSION_BC_SLICED_3D`.
+    Bc1Volume,
+    /// BC1 blocks in a 2D array texture. Needs `TEXTURE_COMPRESSION_BC`.
+    Bc1Array,
+    /// Decoded texels in a 2D array texture, eight times the bytes. Any device.
+    Rgba8Array,
+}
+
+impl fmt::Display for Storage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Bc1Volume => "BC1 volume texture",
+            Self::Bc1Array => "BC1 array texture",
+            Self::Rgba8Array => "RGBA8 array texture",
+        })
+    }
+}
+
+/// A light field on the device.
+pub struct SlabTexture {
+    pub(crate) view: wgpu::TextureView,
+    pub(crate) storage: Storage,
+    bytes: u64,
+}
+
+impl Storage {
+    /// All forms, the preferred one first.
+    pub const ALL: [Self; 3] = [Self::Bc1Volume, Self::Bc1Array, Self::Rgba8Array];
+
+    /// Why a device cannot hold a light field in this form, if so.
+    fn obstacle(self, gpu: &Gpu, field: &PackedLightField) -> Option<String> {
+        let features = gpu.device.features();
+        let limits = gpu.device.limits();
+        let [width, height, depth] = field.layout().size();
+        let (needed, edge, slices, blocks) = match self {
+            Self::Bc1Volume => {
+                let both = wgpu::Features::TEXTURE_COMPRESSION_BC | wgpu::Features::TEXTURE_COMPRESSION_BC_SLICED_3D;
+                (both, limits.max_texture_dimension_3d, limits.max_texture_dimension_3d, true)
+            }
+            Self::Bc1Array => {
+                let one = wgpu::Features::TEXTURE_COMPRESSION_BC;
+                (one, limits.max_texture_dimension_2d, limits.max_texture_array_layers, true)
+            }
+            Self::Rgba8Array => {
+                (wgpu::Features::empty(), limits.max_texture_dimension_2d, limits.max_texture_array_layers, false)
+            }
+        };
+        if !features.contains(needed) {
+            return Some(format!("the device lacks {needed:?}"));
+        }
+        if blocks && field.tilings().iter().any(|tiling| tiling.encoding() != TexelEncoding::Bc1) {
+            return Some("its texels are not BC1 blocks".to_owned());
+        }
+        if width.max(height) > edge || depth > slices {
+            return Some(format!("{width}×{height}×{depth} texels exceed the device's {edge}×{edge}×{slices}"));
+        }
+        let bytes = self.bytes(field);
+        (bytes > MAX_TEXTURE_BYTES).then(|| format!("{bytes} bytes exceed the budget of {MAX_TEXTURE_BYTES}"))
+    }
+
+    /// Bytes of the texture on the device, spare slots of the power-of-two volume included.
+    fn bytes(self, field: &PackedLightField) -> u64 {
+        let texels: u64 = field.layout().size().map(u64::from).iter().product();
+        match self {
+            Self::Bc1Volume | Self::Bc1Array => texels / 2,
+            Self::Rgba8Array => 4 * texels,
+        }
+    }
+
+    fn descriptor(self, [width, height, depth]: [u32; 3]) -> wgpu::TextureDescriptor<'static> {
+        let blocks = self != Self::Rgba8Array;
+        wgpu::TextureDescriptor {
+            label: Some("slabs"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: depth },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: if self == Self::Bc1Volume { wgpu::TextureDimension::D3 } else { wgpu::TextureDimension::D2 },
+            format: if blocks { wgpu::TextureFormat::Bc1RgbaUnorm } else { wgpu::TextureFormat::Rgba8Unorm },
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        }
+    }
+
+    /// The dimension under which the shader sees the texture. A single layer must be asked for as an array, too.
+    fn view_dimension(self) -> wgpu::TextureViewDimension {
+        match self {
+            Self::Bc1Volume => wgpu::TextureViewDimension::D3,
+            Self::Bc1Array | Self::Rgba8Array => wgpu::TextureViewDimension::D2Array,
+        }
+    }
+}
+
+impl SlabTexture {
+    /// Uploads a light field in the first form that the device can hold.
+    ///
+    /// # Errors
+    /// If it can hold none; the reason given is the last form's.
+    pub fn new(gpu: &Gpu, field: &PackedLightField) -> Result<Self, GpuError> {
+        let possible = Storage::ALL.into_iter().find(|storage| storage.obstacle(gpu, field).is_none());
+        Self::with_storage(gpu, field, possible.unwrap_or(Storage::Rgba8Array))
+    }
+
+    /// Uploads a light field in a given form, slice by slice. BC1 blocks go up as they are.
+    ///
+    /// # Errors
+    /// If the device cannot hold it in this form.
+    pub fn with_storage(gpu: &Gpu, field: &PackedLightField, storage: Storage) -> Result<Self, GpuError> {
+        if let Some(why) = storage.obstacle(gpu, field) {
+            return Err(GpuError::Storage { storage, adapter: gpu.name(), why });
+        }
+        let descriptor = storage.descriptor(field.layout().size());
+        let texture = gpu.checked("the slab texture", || gpu.device.create_texture(&descriptor))?;
+        for (slab, layout) in field.layout().slabs().iter().enumerate() {
+            for (slice, tile) in (layout.first_slice()..).zip(field.tiles(slab)) {
+                let size = field.tilings()[slab].tile_size();
+                let bytes = texture_bytes(storage, field.tilings()[slab].encoding(), size, tile)?;
+                gpu.checked("a slice of the slab texture", || upload(gpu, &texture, storage, slice, size, &bytes))?;
+            }
+        }
+        let dimension = Some(storage.view_dimension());
+        let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() });
+        Ok(Self { view, storage, bytes: storage.bytes(field) })
+    }
+
+    /// The form in which it lies on the device.
+    #[must_use]
+    pub fn storage(&self) -> Storage {
+        self.storage
+    }
+
+    /// Bytes of the texture on the device.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}
+
+/// A tile's bytes as the texture wants them.
+fn texture_bytes(
+    storage: Storage,
+    encoding: TexelEncoding,
+    [width, height]: [u32; 2],
+    tile: &[u8],
+) -> Result<Cow<'_, [u8]>, GpuError> {
+    if storage == Storage::Rgba8Array && encoding == TexelEncoding::Bc1 {
+        let texels = bc1::decode_image(width, height, tile).map_err(lf_compress::PackError::from)?;
+        return Ok(bytemuck::cast_slice(&texels).to_vec().into());
+    }
+    Ok(tile.into())
+}
+
+/// Writes one slice. A slice may be larger than the tile; the rest stays zero and is never sampled.
+fn upload(gpu: &Gpu, texture: &wgpu::Texture, storage: Storage, slice: u32, size: [u32; 2], bytes: &[u8]) {
+    let [width, height] = size;
+    // A row of BC1 blocks is 8 bytes for every 4 texels.
+    let (bytes_per_row, rows_per_image) =
+        if storage == Storage::Rgba8Array { (4 * width, height) } else { (2 * width, height / 4) };
+    gpu.queue.write_texture(
+        wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d { x: 0, y: 0, z: slice },
+            aspect: wgpu::TextureAspect::All,
+        },
+        bytes,
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(bytes_per_row),
+            rows_per_image: Some(rows_per_image),
+        },
+        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+    );
+}

@@ -1,0 +1,130 @@
+//! The uniform blocks, laid out as the shaders declare them. A test compares every offset with what naga reflects.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec2, Vec3};
+use lf_compress::PackedLightField;
+use lf_compress::volume::SlabLayout;
+use lf_math::{Pinhole, Slab};
+
+/// `Frame` of reflect.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct FrameUniform {
+    pub(crate) clip_from_cell: Mat4,
+    pub(crate) eye: Vec3,
+    pub(crate) padding: f32,
+}
+
+/// `Slab` of slabs.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct SlabUniform {
+    pub(crate) st_first: Vec2,
+    pub(crate) st_step: Vec2,
+    pub(crate) uv_first: Vec2,
+    pub(crate) uv_step: Vec2,
+    pub(crate) st_last: Vec2,
+    pub(crate) uv_last: Vec2,
+    pub(crate) disparity: Vec2,
+    pub(crate) plane: f32,
+    pub(crate) present: u32,
+    pub(crate) pitch: [u32; 2],
+    pub(crate) cameras_per_slice: [u32; 2],
+    pub(crate) first_slice: u32,
+    pub(crate) groups_s: u32,
+    pub(crate) padding: [u32; 2],
+}
+
+/// `Slabs` of slabs.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct SlabsUniform {
+    pub(crate) texel_scale: Vec3,
+    pub(crate) padding: f32,
+    pub(crate) faces: [SlabUniform; 6],
+}
+
+/// `Probe` of probe.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct ProbeUniform {
+    pub(crate) uv: Vec2,
+    pub(crate) camera: [u32; 2],
+    pub(crate) face: u32,
+    pub(crate) padding: u32,
+}
+
+impl FrameUniform {
+    pub(crate) fn new(camera: &Pinhole, near: f32) -> Self {
+        Self { clip_from_cell: camera.clip_from_cell(near), eye: camera.eye(), padding: 0.0 }
+    }
+}
+
+impl SlabsUniform {
+    pub(crate) fn new(field: &PackedLightField) -> Self {
+        let mut uniform = Self::zeroed();
+        uniform.texel_scale = Vec3::from(field.layout().size().map(|n| 1.0 / n as f32));
+        for (slab, layout) in field.geometry().slabs().iter().zip(field.layout().slabs()) {
+            uniform.faces[usize::from(slab.face().index())] = SlabUniform::new(slab, layout);
+        }
+        uniform
+    }
+}
+
+impl SlabUniform {
+    fn new(slab: &Slab, layout: &SlabLayout) -> Self {
+        let ([s, t], [u, v]) = (slab.st(), slab.uv());
+        Self {
+            st_first: Vec2::new(s.first(), t.first()),
+            st_step: Vec2::new(s.step(), t.step()),
+            uv_first: Vec2::new(u.first(), v.first()),
+            uv_step: Vec2::new(u.step(), v.step()),
+            st_last: Vec2::new(s.last_index(), t.last_index()),
+            uv_last: Vec2::new(u.last_index(), v.last_index()),
+            disparity: slab.disparity(),
+            plane: slab.plane(),
+            present: 1,
+            pitch: layout.pitch(),
+            cameras_per_slice: layout.cameras_per_slice(),
+            first_slice: layout.first_slice(),
+            groups_s: layout.groups()[0],
+            padding: [0; 2],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::mem::{offset_of, size_of};
+
+    use crate::pass::shader_source;
+    use crate::storage::Storage;
+
+    /// Offsets of a WGSL struct's members and its size, as naga lays it out.
+    fn reflected(module: &wgpu::naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
+        let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).expect("declared");
+        let wgpu::naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is a struct") };
+        (members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset)).collect(), *span)
+    }
+
+    macro_rules! same_layout {
+        ($module:expr, $name:literal, $rust:ty, $($field:ident),+) => {{
+            let expected = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field) as u32)),+];
+            assert_eq!(reflected($module, $name), (expected, size_of::<$rust>() as u32), $name);
+        }};
+    }
+
+    #[test]
+    fn rust_and_wgsl_agree_on_every_offset() {
+        let source = shader_source(Some(Storage::Bc1Volume), true);
+        let module = wgpu::naga::front::wgsl::parse_str(&source).expect("the shader parses");
+        same_layout!(&module, "Frame", FrameUniform, clip_from_cell, eye, padding);
+        same_layout!(
+            &module, "Slab", SlabUniform, st_first, st_step, uv_first, uv_step, st_last, uv_last, disparity, plane,
+            present, pitch, cameras_per_slice, first_slice, groups_s, padding
+        );
+        same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, faces);
+        same_layout!(&module, "Probe", ProbeUniform, uv, camera, face, padding);
+    }
+}

@@ -1,0 +1,123 @@
+//! Reflections from light field slabs.
+
+use glam::{Vec2, Vec3};
+use lf_math::{GeometryError, LightFieldGeometry, Ray, SlabTexels};
+
+use crate::frame::Environment;
+
+/// Slabs with their decoded texels.
+#[derive(Debug, Clone)]
+pub struct SlabField {
+    geometry: LightFieldGeometry,
+    texels: Vec<SlabTexels>,
+}
+
+impl SlabField {
+    /// A light field with the texels of each of its slabs.
+    ///
+    /// # Errors
+    /// There must be texels for every slab, with its numbers of cameras and texels.
+    pub fn new(geometry: LightFieldGeometry, texels: Vec<SlabTexels>) -> Result<Self, GeometryError> {
+        if texels.len() != geometry.slabs().len() {
+            let expected = geometry.slabs().len();
+            return Err(GeometryError::Length { what: "slab texels", len: texels.len(), expected });
+        }
+        for (slab, texels) in geometry.slabs().iter().zip(&texels) {
+            texels.check(slab)?;
+        }
+        Ok(Self { geometry, texels })
+    }
+
+    /// The cell and the slabs.
+    #[must_use]
+    pub fn geometry(&self) -> &LightFieldGeometry {
+        &self.geometry
+    }
+}
+
+impl Environment for SlabField {
+    /// Fig. 8 of the paper: four cameras, a bilinear fetch from each, blended by the ray's place between them. Rays
+    /// outside the slab's range are answered by its nearest samples.
+    fn look_up(&self, ray: &Ray) -> Option<Vec3> {
+        let indexed = self.geometry.index_ray(ray)?;
+        let (slab, texels) = (&self.geometry.slabs()[indexed.slab], &self.texels[indexed.slab]);
+        let taps = slab.taps(&indexed.coord);
+        Some(taps.iter().map(|tap| tap.weight * bilinear(texels, tap.camera, tap.uv)).sum())
+    }
+}
+
+/// Bilinear fetch at index units `uv`, which must lie within the image. Result in 0 … 1.
+fn bilinear(texels: &SlabTexels, camera: [u32; 2], uv: Vec2) -> Vec3 {
+    let [width, height] = texels.resolution();
+    let image = texels.image(camera);
+    let low = uv.floor();
+    let fraction = uv - low;
+    let (x, y) = (low.x as u32, low.y as u32);
+    let (next_x, next_y) = ((x + 1).min(width - 1), (y + 1).min(height - 1));
+    let texel = |x: u32, y: u32| {
+        let [r, g, b, _] = image[(y * width + x) as usize];
+        Vec3::new(f32::from(r), f32::from(g), f32::from(b))
+    };
+    let row = |y: u32| texel(x, y).lerp(texel(next_x, y), fraction.x);
+    row(y).lerp(row(next_y), fraction.y) / 255.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use lf_math::{Cell, PlanePlacement};
+    use proptest::prelude::*;
+
+    /// A field whose texel values are affine in all four indices, so that interpolation is exact.
+    fn affine_field() -> SlabField {
+        let cell = Cell::cube(DVec3::ZERO, 1.0).unwrap();
+        let geometry = LightFieldGeometry::around(cell, PlanePlacement::CellFaces, 5, 9).unwrap();
+        let texels = |slab: &lf_math::Slab| {
+            let mut all = Vec::new();
+            for (t, s) in (0..5u8).flat_map(|t| (0..5u8).map(move |s| (t, s))) {
+                for (v, u) in (0..9u8).flat_map(|v| (0..9u8).map(move |u| (v, u))) {
+                    all.push([10 * s + 5 * u, 10 * t + 5 * v, 20 * slab.face().index(), 255]);
+                }
+            }
+            SlabTexels::new(slab, all).unwrap()
+        };
+        let texels = geometry.slabs().iter().map(texels).collect();
+        SlabField::new(geometry, texels).unwrap()
+    }
+
+    #[test]
+    fn directions_without_a_face_have_no_answer() {
+        let field = affine_field();
+        assert_eq!(field.look_up(&Ray { origin: Vec3::ZERO, direction: Vec3::ZERO }), None);
+        assert_eq!(field.look_up(&Ray { origin: Vec3::ZERO, direction: Vec3::NAN }), None);
+    }
+
+    #[test]
+    fn texels_of_another_shape_are_refused() {
+        let field = affine_field();
+        let mut texels = field.texels.clone();
+        texels.pop();
+        assert!(SlabField::new(field.geometry.clone(), texels).is_err());
+        let coarse =
+            LightFieldGeometry::around(*field.geometry.cell(), PlanePlacement::CellFaces, 4, 9).unwrap();
+        assert!(SlabField::new(coarse, field.texels).is_err());
+    }
+
+    proptest! {
+        /// Quadrilinear interpolation reproduces affine functions of (s′, t′, u′, v′).
+        #[test]
+        fn interpolation_is_exact_on_affine_fields(
+            o in prop::array::uniform3(-0.5f32..0.5), d in prop::array::uniform3(-1.0f32..1.0)
+        ) {
+            let ray = Ray { origin: Vec3::from(o), direction: Vec3::from(d) };
+            prop_assume!(ray.direction.abs().max_element() > 1e-3);
+            let field = affine_field();
+            let indexed = field.geometry.index_ray(&ray).unwrap();
+            let (st, uv) = (indexed.coord.st, indexed.coord.uv);
+            let expected = (10.0 * st + 5.0 * uv).extend(20.0 * indexed.slab as f32) / 255.0;
+            let found = field.look_up(&ray).unwrap();
+            prop_assert!((found - expected).abs().max_element() < 1e-5, "{found} {expected}");
+        }
+    }
+}
