@@ -1,1 +1,43 @@
-fn main() {}
+//! `lfslab`: capture, compress, inspect and render environment light fields.
+//!
+//! Each sub-command is a short list of calls into the crates; no algorithm lives here.
+
+#![forbid(unsafe_code)]
+
+mod args;
+mod capture;
+mod demo;
+mod device;
+mod frames;
+mod info;
+mod output;
+mod pictures;
+mod render;
+mod sources;
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::Parser;
+
+use crate::args::{Cli, Command};
+
+fn main() -> ExitCode {
+    match run(&Cli::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: &Command) -> Result<()> {
+    match command {
+        Command::Demo(args) => demo::run(args),
+        Command::Capture(args) => capture::run(args),
+        Command::Render(args) => render::run(args),
+        Command::Info(args) => info::info(&args.file),
+        Command::Validate(args) => info::validate(&args.file),
+    }
+}

@@ -22,12 +22,18 @@ pub struct Capture {
     pub rays: u64,
 }
 
-/// Inverse depths seen from the camera plane by the rays that pass through the cell.
-#[derive(Debug, Default, Clone, Copy)]
+/// How often each inverse depth was seen from the camera plane by the rays that pass through the cell.
+///
+/// Bins are `1/z = i·4/(BINS·h)`, h being the cell's smallest half extent: fine enough that the next bin moves nothing by
+/// a texel, and up to a quarter of h. What is nearer, or behind the plane, only counts as being beyond an end.
+#[derive(Debug, Clone)]
 struct Depths {
-    sum: f64,
-    rays: u64,
+    bin: f64,
+    counts: Vec<u64>,
 }
+
+/// Number of bins of inverse depth.
+const BINS: usize = 4096;
 
 /// Traces every sample of every slab, on all threads.
 ///
@@ -35,8 +41,9 @@ struct Depths {
 /// `grid × grid` rays spread over its footprint in (u, v); 0 counts as 1. `progress` is told the number of camera images
 /// finished so far, of [`image_count`](Capture) in all, from any thread.
 ///
-/// Each slab's focal plane is put at `1 / mean(1/z)`, z being the depth of what the rays through the cell meet: the
-/// disparity of least mean squared error (Chai et al. 2000 give the harmonic mean of the extremes, the minimax choice).
+/// Each slab's focal plane is put at `1 / median(1/z)`, z being the depth of what the rays through the cell meet: the
+/// disparity of least mean absolute error. (Chai et al. 2000 give the harmonic mean of the extremes, the minimax choice;
+/// a single object that touches the camera plane would pull that, or the mean, to zero depth.)
 ///
 /// # Errors
 /// If the slabs need more texels than fit in memory addresses.
@@ -61,8 +68,8 @@ pub fn capture_slabs(
             finished();
             depths
         });
-        // Collected in order before adding up, so that the sum does not depend on the threads.
-        let depths = images.collect::<Vec<_>>().into_iter().fold(Depths::default(), Depths::plus);
+        let none = || Depths::new(geometry.cell());
+        let depths = images.reduce(none, Depths::plus);
         slabs.push(slab.with_focal_depth(depths.focal_depth())?);
         rays += all.len() as u64 * u64::from(grid * grid);
         texels.push(SlabTexels::new(slab, all)?);
@@ -80,7 +87,7 @@ fn capture_image(
 ) -> Depths {
     let slab = &geometry.slabs()[number];
     let width = slab.resolution()[0];
-    let mut depths = Depths::default();
+    let mut depths = Depths::new(geometry.cell());
     for (index, texel) in image.iter_mut().enumerate() {
         let center = Vec2::new((index as u32 % width) as f32, (index as u32 / width) as f32);
         let mut sum = Vec3::ZERO;
@@ -135,23 +142,37 @@ fn opaque(linear: Vec3) -> [u8; 4] {
 }
 
 impl Depths {
-    /// Counts a ray if it passes through the cell; what is infinitely far away counts as inverse depth 0.
+    fn new(cell: &Cell) -> Self {
+        let nearest = 0.25 * f64::from(cell.half_extent().min_element());
+        Self { bin: 1.0 / (nearest * BINS as f64), counts: vec![0; BINS] }
+    }
+
+    /// Counts a ray if it passes through the cell.
     fn add(&mut self, cell: &Cell, ray: &Ray, depth: f32) {
         // `ray` starts where it leaves the cell, or beside it if it misses.
-        if depth > 0.0 && cell.contains(ray.origin * (1.0 - 1e-4)) {
-            self.sum += 1.0 / f64::from(depth);
-            self.rays += 1;
+        if cell.contains(ray.origin * (1.0 - 1e-4)) {
+            // What lies behind the plane has a negative inverse depth: below all others.
+            let inverse = if depth > 0.0 { 1.0 / f64::from(depth) } else { 0.0 };
+            self.counts[((inverse / self.bin) as usize).min(BINS - 1)] += 1;
         }
     }
 
-    fn plus(self, other: Self) -> Self {
-        Self { sum: self.sum + other.sum, rays: self.rays + other.rays }
+    fn plus(mut self, other: Self) -> Self {
+        for (count, more) in self.counts.iter_mut().zip(other.counts) {
+            *count += more;
+        }
+        self
     }
 
-    /// `1 / mean(1/z)`; none (infinity) if nothing was seen.
+    /// `1 / median(1/z)`; none (infinity) if nothing was seen, or most of it too far for the first bin.
     fn focal_depth(&self) -> Option<f32> {
-        let depth = (self.rays as f64 / self.sum) as f32;
-        (depth.is_finite() && depth > 0.0).then_some(depth)
+        let half = self.counts.iter().sum::<u64>().div_ceil(2);
+        let mut below = 0;
+        let median = self.counts.iter().position(|count| {
+            below += count;
+            below >= half
+        });
+        median.filter(|&i| i > 0).map(|i| (1.0 / (self.bin * (i as f64 + 0.5))) as f32)
     }
 }
 

@@ -79,7 +79,7 @@ fn columns(builder: &mut SceneBuilder) {
     let stone = builder.material(Material::diffuse(Vec3::splat(0.45)));
     for (i, color) in (0..).zip(colors) {
         let angle = TAU * (i as f32 + 0.5) / 8.0;
-        let foot = Vec3::new(angle.cos(), 0.0, angle.sin()) * 2.5;
+        let foot = Vec3::new(angle.cos(), 0.0, angle.sin()) * 2.1;
         let shaft = builder.material(Material::diffuse(color));
         builder.column(foot, 0.17, HEIGHT, 32, shaft);
         for y in [0.0, HEIGHT - 0.2] {

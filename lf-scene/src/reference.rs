@@ -18,12 +18,12 @@ pub struct Mirror {
     bvh: TriangleBvh,
 }
 
-/// A reference picture.
+/// A reference picture of a mirror.
 #[derive(Debug, Clone)]
 pub struct Reference {
-    /// Radiance in linear RGB: the reflection where the reflector is, the scene behind it elsewhere.
+    /// Radiance in linear RGB where the mirror is, black elsewhere.
     pub radiance: Image<Vec3>,
-    /// Where the reflector is.
+    /// Where the mirror is.
     pub mask: Image<bool>,
 }
 
@@ -52,21 +52,28 @@ impl Mirror {
     }
 }
 
-/// Traces the picture that `camera` sees of `mirror` in the scene around `cell`, on all threads.
+/// Traces what `camera` sees in `mirror`, which hangs in the scene around `cell`, on all threads.
 #[must_use]
 pub fn render(tracer: &Tracer, cell: &Cell, mirror: &Mirror, camera: &Pinhole) -> Reference {
-    let (width, height) = (camera.width(), camera.height());
-    let pixel = |index: u32| {
-        let ray = camera.ray(index % width, index / width);
-        let reflected = mirror.reflected(&ray);
-        let traced = trace_in_cell_space(tracer, cell, reflected.as_ref().unwrap_or(&ray));
-        (traced.radiance, reflected.is_some())
-    };
-    let (radiance, mask): (Vec<_>, Vec<_>) = (0..width * height).into_par_iter().map(pixel).unzip();
-    let mut reference = Reference { radiance: Image::filled(width, height, Vec3::ZERO), mask: Image::filled(width, height, false) };
-    reference.radiance.texels_mut().copy_from_slice(&radiance);
-    reference.mask.texels_mut().copy_from_slice(&mask);
-    reference
+    let seen = per_pixel(camera, |ray| {
+        mirror.reflected(ray).map(|reflected| trace_in_cell_space(tracer, cell, &reflected).radiance)
+    });
+    Reference { radiance: seen.map(|radiance| radiance.unwrap_or(Vec3::ZERO)), mask: seen.map(|r| r.is_some()) }
+}
+
+/// Traces the scene as `camera` sees it without any mirror: radiance in linear RGB, on all threads.
+#[must_use]
+pub fn background(tracer: &Tracer, cell: &Cell, camera: &Pinhole) -> Image<Vec3> {
+    per_pixel(camera, |ray| trace_in_cell_space(tracer, cell, ray).radiance)
+}
+
+fn per_pixel<T: Copy + Default + Send>(camera: &Pinhole, value: impl Fn(&Ray) -> T + Sync) -> Image<T> {
+    let width = camera.width();
+    let mut image = Image::filled(width, camera.height(), T::default());
+    image.texels_mut().par_iter_mut().enumerate().for_each(|(index, pixel)| {
+        *pixel = value(&camera.ray(index as u32 % width, index as u32 / width));
+    });
+    image
 }
 
 #[cfg(test)]

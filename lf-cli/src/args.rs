@@ -1,0 +1,225 @@
+//! The command line.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::{DVec3, Vec3};
+use lf_math::PlanePlacement;
+
+/// Reflections with parallax from light field slabs: capture, compress, inspect and render them.
+#[derive(Debug, Parser)]
+#[command(name = "lfslab", version, propagate_version = true)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run everything once: scene, capture, encoding, file, pictures and a report of error against run time
+    Demo(DemoArgs),
+    /// Capture a scene into a .lfslab file
+    Capture(CaptureArgs),
+    /// Draw a mirror that reflects a .lfslab file
+    Render(RenderArgs),
+    /// Show what a .lfslab file holds
+    Info(FileArgs),
+    /// Check every byte of a .lfslab file
+    Validate(FileArgs),
+}
+
+/// Where the light comes from.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArgs {
+    /// A glTF scene (.glb, .gltf) instead of the embedded museum
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scene: Option<PathBuf>,
+    /// The cell: centre and edge length in metres, as x,y,z,size [default: the museum's, or free space near the scene's
+    /// camera]
+    #[arg(long, value_name = "X,Y,Z,SIZE", allow_hyphen_values = true)]
+    pub(crate) cell: Option<CellArg>,
+    /// How many cameras and texels
+    #[arg(long, value_enum, default_value_t = Preset::Small)]
+    pub(crate) preset: Preset,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DemoArgs {
+    /// Folder for the results; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "lfslab-demo")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// An OBJ mesh to reflect in, instead of the teapot
+    #[arg(long, value_name = "FILE")]
+    pub(crate) reflector: Option<PathBuf>,
+    /// Width and height of the pictures in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(16..=4096))]
+    pub(crate) size: u32,
+    /// Draw on the CPU even if there is a GPU
+    #[arg(long)]
+    pub(crate) cpu: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CaptureArgs {
+    /// The file to write
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Cameras per axis, instead of the preset's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub(crate) cameras: Option<u32>,
+    /// Texels per axis of each camera's image, instead of the preset's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub(crate) resolution: Option<u32>,
+    /// Where the camera planes stand, instead of the preset's choice
+    #[arg(long, value_enum)]
+    pub(crate) planes: Option<Planes>,
+    /// How texels are stored
+    #[arg(long, value_enum, default_value_t = Encoding::Bc1)]
+    pub(crate) encoding: Encoding,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RenderArgs {
+    /// The light field
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// The picture to write (.png)
+    #[arg(long, value_name = "PNG")]
+    pub(crate) out: PathBuf,
+    /// What mirrors: `sphere`, `teapot` or an OBJ file
+    #[arg(long, value_name = "MESH", default_value = "teapot")]
+    pub(crate) reflector: String,
+    /// Where the eye stands, seen from the cell's centre, in edge lengths of the cell, as x,y,z
+    #[arg(long, value_name = "X,Y,Z", default_value = "1.4,0.5,0.6", allow_hyphen_values = true)]
+    pub(crate) eye: EyeArg,
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(16..=4096))]
+    pub(crate) size: u32,
+    /// Draw on the CPU even if there is a GPU
+    #[arg(long)]
+    pub(crate) cpu: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FileArgs {
+    /// The light field
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+}
+
+/// Numbers of cameras and texels.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Preset {
+    /// 16×16 cameras of 64×64 texels per slab
+    Small,
+    /// 32×32 cameras of 128×128 texels per slab, as in the paper
+    Paper,
+}
+
+/// Where the camera planes stand.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Planes {
+    /// On the cell's faces, as in the paper: slabs of three edge lengths
+    Faces,
+    /// Through the cell's centre: slabs of two edge lengths
+    Center,
+}
+
+/// How texels are stored.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Encoding {
+    /// BC1 (DXT1) blocks, 4 bits a texel
+    Bc1,
+    /// Plain RGBA, 32 bits a texel
+    Rgba8,
+}
+
+/// A cell given on the command line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CellArg {
+    pub(crate) center: DVec3,
+    pub(crate) size: f32,
+}
+
+/// A point given on the command line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct EyeArg(pub(crate) Vec3);
+
+/// What a preset stands for.
+pub(crate) struct Sampling {
+    pub(crate) cameras: u32,
+    pub(crate) resolution: u32,
+    pub(crate) placement: PlanePlacement,
+    /// Rays per texel and axis.
+    pub(crate) grid: u32,
+}
+
+impl Preset {
+    pub(crate) fn sampling(self) -> Sampling {
+        match self {
+            Self::Small => Sampling { cameras: 16, resolution: 64, placement: PlanePlacement::CellCenter, grid: 2 },
+            Self::Paper => Sampling { cameras: 32, resolution: 128, placement: PlanePlacement::CellFaces, grid: 1 },
+        }
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Small => "small",
+            Self::Paper => "paper",
+        }
+    }
+}
+
+/// Exactly `N` finite numbers set apart by commas.
+fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let parsed: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse::<f64>()).collect();
+    let finite = parsed.ok().filter(|all| all.iter().all(|n| n.is_finite() && n.abs() < 1e30));
+    let list = finite.and_then(|all| <[f64; N]>::try_from(all).ok());
+    list.ok_or_else(|| format!("expected {N} numbers set apart by commas"))
+}
+
+impl FromStr for CellArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let [x, y, z, size] = numbers(text)?;
+        if size <= 0.0 {
+            return Err("the size must be greater than 0".to_owned());
+        }
+        Ok(Self { center: DVec3::new(x, y, z), size: size as f32 })
+    }
+}
+
+impl FromStr for EyeArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        numbers(text).map(|[x, y, z]: [f64; 3]| Self(DVec3::new(x, y, z).as_vec3()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn cells_and_eyes_are_parsed() {
+        let cell: CellArg = "1, -2,3.5,0.25".parse().unwrap();
+        assert_eq!((cell.center, cell.size), (DVec3::new(1.0, -2.0, 3.5), 0.25));
+        for bad in ["", "1,2,3", "1,2,3,0", "1,2,3,nan", "1,2,3,4,5", "1,2,3,-1"] {
+            assert!(bad.parse::<CellArg>().is_err(), "{bad}");
+        }
+        assert_eq!("-1,0,2".parse::<EyeArg>(), Ok(EyeArg(Vec3::new(-1.0, 0.0, 2.0))));
+    }
+}

@@ -1,0 +1,91 @@
+//! `lfslab capture`: scene in, file out.
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use lf_compress::PackedLightField;
+use lf_compress::bc1::Quality;
+use lf_format::{Metadata, TexelEncoding};
+use lf_math::{Image, LightFieldGeometry, PlanePlacement};
+use lf_scene::{Capture, capture_slabs};
+
+use crate::args::{CaptureArgs, Encoding, Planes, Sampling};
+use crate::output::progress_bar;
+use crate::sources::Source;
+
+pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
+    let source = Source::load(&args.scene)?;
+    let preset = args.scene.preset.sampling();
+    let placement = match args.planes {
+        None => preset.placement,
+        Some(Planes::Faces) => PlanePlacement::CellFaces,
+        Some(Planes::Center) => PlanePlacement::CellCenter,
+    };
+    let cameras = args.cameras.unwrap_or(preset.cameras);
+    let resolution = args.resolution.unwrap_or(preset.resolution);
+    let (captured, _) = capture(&source, &Sampling { cameras, resolution, placement, grid: preset.grid })?;
+    let encoding = match args.encoding {
+        Encoding::Bc1 => TexelEncoding::Bc1,
+        Encoding::Rgba8 => TexelEncoding::Rgba8,
+    };
+    let packed = encode(&captured, encoding)?.0;
+    let writer = packed.to_writer(metadata(&source)?)?;
+    let bytes = writer.save(&args.out)?;
+    println!("{}: {}", args.out.display(), megabytes(bytes));
+    Ok(())
+}
+
+/// Captures the slabs with a progress bar; also how long it took.
+pub(crate) fn capture(source: &Source, sampling: &Sampling) -> Result<(Capture, Duration)> {
+    let &Sampling { cameras, resolution, placement, grid } = sampling;
+    let geometry = LightFieldGeometry::around(source.cell, placement, cameras, resolution)?;
+    let images = u64::from(cameras).pow(2) * geometry.slabs().len() as u64;
+    eprintln!("capture  6 slabs of {cameras}×{cameras} cameras × {resolution}×{resolution} texels, {grid}×{grid} rays each");
+    let bar = progress_bar(images, "capture", "camera images");
+    let start = Instant::now();
+    let captured = capture_slabs(&source.tracer, &geometry, grid, &|done| bar.set_position(done))?;
+    bar.finish_and_clear();
+    let elapsed = start.elapsed();
+    let rate = captured.rays as f64 / elapsed.as_secs_f64() / 1e6;
+    eprintln!("         {:.1} s, {:.1} million rays, {rate:.2} million a second", elapsed.as_secs_f64(), captured.rays as f64 / 1e6);
+    Ok((captured, elapsed))
+}
+
+/// Encodes a capture and says what it cost; also the encoding time and the PSNR of the stored texels.
+pub(crate) fn encode(capture: &Capture, encoding: TexelEncoding) -> Result<(PackedLightField, Duration, f64)> {
+    let start = Instant::now();
+    let packed = PackedLightField::encode(capture.geometry.clone(), &capture.texels, encoding, Quality::Standard)?;
+    let elapsed = start.elapsed();
+    let psnr = stored_psnr(capture, &packed)?;
+    eprintln!("encode   {:.1} s, {psnr:.2} dB", elapsed.as_secs_f64());
+    Ok((packed, elapsed, psnr))
+}
+
+/// PSNR of all decoded texels against the captured ones.
+fn stored_psnr(capture: &Capture, packed: &PackedLightField) -> Result<f64> {
+    let (mut squares, mut values) = (0.0, 0.0);
+    for (before, after) in capture.texels.iter().zip(packed.decode()?) {
+        let (before, after) = (before.contact_sheet(), after.contact_sheet());
+        let all = Image::filled(before.width(), before.height(), true);
+        let error = lf_math::image_error(&before, &after, &all)?;
+        squares += error.mse * error.pixels as f64;
+        values += error.pixels as f64;
+    }
+    Ok(10.0 * (255.0 * 255.0 * values / squares).log10())
+}
+
+/// Who made the file from what.
+pub(crate) fn metadata(source: &Source) -> Result<Metadata> {
+    let mut metadata = Metadata::new();
+    metadata.insert("generator", concat!("lfslab ", env!("CARGO_PKG_VERSION")))?;
+    metadata.insert("scene", source.name())?;
+    if let Some(license) = &source.license {
+        metadata.insert("license", license.as_str()).context("the scene's licence line")?;
+    }
+    Ok(metadata)
+}
+
+/// A size in MiB for people.
+pub(crate) fn megabytes(bytes: u64) -> String {
+    format!("{:.2} MiB ({bytes} bytes)", bytes as f64 / f64::from(1 << 20))
+}

@@ -1,0 +1,288 @@
+//! `lfslab demo`: the whole way from scene to report.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use lf_math::{CubeMap, Image, Pinhole, TriangleMesh};
+use lf_report::{Figure, Machine, MethodResult, Report};
+use lf_scene::{Capture, capture_cube};
+
+use crate::args::DemoArgs;
+use crate::capture::{capture, encode, megabytes, metadata};
+use crate::device::{CpuSide, GpuSide, open_gpu};
+use crate::frames::{Asked, MethodFrames, ReflectorFrames, Stage, agreement, full_orbit, orbit};
+use crate::info::load;
+use crate::output::{png, progress_bar, write, write_exr};
+use crate::pictures::{ERROR_GAIN, difference, middle, sheet, shrunk, strip};
+use crate::sources::{Source, reflector};
+
+/// Texels along the edge of the environment map's faces, and rays per texel and axis.
+const CUBE_SIZE: u32 = 512;
+const CUBE_GRID: u32 = 2;
+/// Eyes of the parallax sheet, and the angle between them, radians (7°).
+const ARC_EYES: u32 = 6;
+const ARC_STEP: f32 = 0.122_173_05;
+
+/// What was made before the frames, with what it cost.
+struct Prepared {
+    source: Source,
+    capture: Capture,
+    cube: CubeMap,
+    file_bytes: u64,
+    capture_time: Duration,
+    encode_time: Duration,
+    cube_time: Duration,
+    stored_psnr: f64,
+}
+
+pub(crate) fn run(args: &DemoArgs) -> Result<()> {
+    let start = Instant::now();
+    std::fs::create_dir_all(&args.out).with_context(|| format!("cannot make the folder {}", args.out.display()))?;
+    let source = Source::load(&args.scene)?;
+    let names = ["sphere", args.reflector.as_deref().map_or(Some("teapot"), Path::to_str).context("--reflector: the path is not UTF-8")?];
+    // Read before the long work, so that a bad file is known at once.
+    let reflectors = names.iter().map(|name| reflector(name, &source.cell)).collect::<Result<Vec<_>>>()?;
+
+    let file = args.out.join(format!("{}.lfslab", source.name()));
+    let prepared = prepare(args, source, &file)?;
+    // From here on everything comes from the file.
+    let field = load(&file)?;
+    let cpu = CpuSide::new(&field, &prepared.cube)?;
+    let gpu = open_gpu(args.cpu).map(|gpu| GpuSide::new(gpu, &field, &prepared.cube, args.size)).transpose()?;
+    let stage = Stage { source: &prepared.source, cpu: &cpu, gpu: gpu.as_ref() };
+    let frames = draw(args, &stage, &reflectors)?;
+    let parallax = parallax(args, &stage, &reflectors[0].1)?;
+
+    let report = report(args, &prepared, &frames, gpu.as_ref())?;
+    let mut figures = vec![save_figure(&args.out, "parallax", "Parallax on the sphere", PARALLAX_CAPTION, &parallax)?];
+    for (name, frames) in &frames {
+        figures.extend(save_pictures(&args.out, name, frames)?);
+    }
+    write(&args.out.join("report.json"), report.to_json()?.as_bytes())?;
+    write(&args.out.join("error-time.svg"), report.error_time_svg()?.as_bytes())?;
+    write(&args.out.join("report.html"), report.to_html(&figures)?.as_bytes())?;
+    println!("{}", report.to_markdown_table());
+    for headline in report.headlines() {
+        println!("{headline}");
+    }
+    println!("\n{:.0} s; open {}", start.elapsed().as_secs_f64(), args.out.join("report.html").display());
+    Ok(())
+}
+
+const PARALLAX_CAPTION: &str = "The middle of the sphere from six eyes 7° apart. In the traced and in the slab pictures \
+    near columns move against the pictures on the wall behind; in the environment map they stay glued together.";
+
+/// Captures, encodes, writes the file and takes the environment map.
+fn prepare(args: &DemoArgs, source: Source, file: &Path) -> Result<Prepared> {
+    let (capture, capture_time) = capture(&source, &args.scene.preset.sampling())?;
+    let (packed, encode_time, stored_psnr) = encode(&capture, lf_format::TexelEncoding::Bc1)?;
+    let file_bytes = packed.to_writer(metadata(&source)?)?.save(file)?;
+    eprintln!("file     {}: {}", file.display(), megabytes(file_bytes));
+    let start = Instant::now();
+    let cube = capture_cube(&source.tracer, &source.cell, CUBE_SIZE, CUBE_GRID)?;
+    let cube_time = start.elapsed();
+    eprintln!("cube map {:.1} s, 6 faces of {CUBE_SIZE}×{CUBE_SIZE} texels", cube_time.as_secs_f64());
+    Ok(Prepared { source, capture, cube, file_bytes, capture_time, encode_time, cube_time, stored_psnr })
+}
+
+/// All methods on all reflectors, seen from the orbit.
+fn draw(
+    args: &DemoArgs,
+    stage: &Stage<'_>,
+    reflectors: &[(String, TriangleMesh)],
+) -> Result<Vec<(String, ReflectorFrames)>> {
+    let cameras = full_orbit(edge(stage), args.size)?;
+    let backgrounds = stage.backgrounds(&cameras);
+    let methods = if stage.gpu.is_some() { 5 } else { 3 };
+    let bar = progress_bar((reflectors.len() * cameras.len() * methods) as u64, "frames", "pictures");
+    let draw = |(name, mesh): &(String, TriangleMesh)| {
+        Ok((name.clone(), stage.frames(mesh, &cameras, &backgrounds, || bar.inc(1))?))
+    };
+    let frames = reflectors.iter().map(draw).collect();
+    bar.finish_and_clear();
+    frames
+}
+
+fn edge(stage: &Stage<'_>) -> f32 {
+    2.0 * stage.source.cell.half_extent().min_element()
+}
+
+/// The sphere's middle from a few close eyes: what moves against what.
+fn parallax(args: &DemoArgs, stage: &Stage<'_>, sphere: &TriangleMesh) -> Result<Image<[u8; 4]>> {
+    let cameras: Vec<Pinhole> = orbit(edge(stage), args.size, 0.3, ARC_STEP, ARC_EYES)?;
+    let frames = stage.frames(sphere, &cameras, &stage.backgrounds(&cameras), || ())?;
+    let row = |title: &str, pictures: &[Image<[u8; 4]>]| (title.to_owned(), pictures.iter().map(middle).collect());
+    Ok(sheet(&[
+        row("ray traced; eyes 7 degrees apart", &frames.truth),
+        row("slabs", &shown(&frames, Asked::Slabs).pictures),
+        row("environment map", &shown(&frames, Asked::Cube).pictures),
+    ]))
+}
+
+/// The frames to show of a method: the first device's, which is the GPU if there is one.
+fn shown(frames: &ReflectorFrames, asked: Asked) -> &MethodFrames {
+    let found = frames.methods.iter().find(|method| method.asked == asked);
+    found.unwrap_or_else(|| unreachable!("every method is drawn on every device"))
+}
+
+/// One strip for each eye, the contact sheet, and the first reference as OpenEXR.
+fn save_pictures(out: &Path, name: &str, frames: &ReflectorFrames) -> Result<Vec<Figure>> {
+    let (slabs, cube) = (&shown(frames, Asked::Slabs).pictures, &shown(frames, Asked::Cube).pictures);
+    let mut figures = Vec::new();
+    let gained = format!("x{ERROR_GAIN}");
+    for (eye, truth) in frames.truth.iter().enumerate() {
+        let picture = strip(&[
+            ("ray traced", truth.clone()),
+            ("slabs", slabs[eye].clone()),
+            ("environment map", cube[eye].clone()),
+            (&format!("error of slabs {gained}"), difference(truth, &slabs[eye])),
+            (&format!("error of environment map {gained}"), difference(truth, &cube[eye])),
+        ]);
+        let file = format!("{name}-eye-{eye}");
+        let caption = "Reference, both methods, and their absolute errors, brightened.";
+        let figure = save_figure(out, &file, &format!("{name}, eye {eye}"), caption, &picture)?;
+        if eye == 0 {
+            figures.push(figure);
+        }
+    }
+    let row = |title: &str, pictures: &[Image<[u8; 4]>]| {
+        (title.to_owned(), pictures.iter().map(|picture| shrunk(picture, 2)).collect())
+    };
+    let contact = sheet(&[row("ray traced", &frames.truth), row("slabs", slabs), row("environment map", cube)]);
+    let caption = "The orbit: eight eyes, 45° apart.";
+    figures.push(save_figure(out, &format!("{name}-orbit"), &format!("{name}, all eyes"), caption, &contact)?);
+    write_exr(&out.join(format!("{name}-eye-0-reference.exr")), &frames.references[0].radiance)?;
+    Ok(figures)
+}
+
+fn save_figure(out: &Path, file: &str, title: &str, caption: &str, picture: &Image<[u8; 4]>) -> Result<Figure> {
+    let png = png(picture)?;
+    write(&out.join(format!("{file}.png")), &png)?;
+    Ok(Figure { title: title.to_owned(), caption: caption.to_owned(), png })
+}
+
+fn report(
+    args: &DemoArgs,
+    prepared: &Prepared,
+    frames: &[(String, ReflectorFrames)],
+    gpu: Option<&GpuSide>,
+) -> Result<Report> {
+    let adapter = gpu.map(|side| side.gpu.name());
+    let mut results = Vec::new();
+    for (name, frames) in frames {
+        results.extend(frames.methods.iter().map(|method| method_result(args, prepared, name, method, gpu)));
+        results.push(MethodResult {
+            reflector: name.clone(),
+            method: "ray tracing".into(),
+            parameters: "reference, 1 ray a pixel".into(),
+            device: "CPU".into(),
+            eyes: vec![],
+            timing: frames.reference_timing.clone(),
+            bytes_on_device: size_of_val(prepared.source.tracer.scene().triangles()) as u64,
+            bytes_on_disk: None,
+            preparation_s: prepared.source.build_time.as_secs_f64(),
+        });
+    }
+    let mut notes = vec![
+        "PSNR is over the reflector's pixels of 8-bit sRGB pictures, against one traced ray per pixel.".to_owned(),
+        "The reference reflects the surroundings once; the reflector's image in itself is left out in all methods.".to_owned(),
+    ];
+    notes.extend(frames.iter().filter_map(|(name, frames)| parity_note(name, frames)));
+    Ok(Report {
+        title: format!("Reflections in {}", prepared.source.name()),
+        generator: concat!("lfslab ", env!("CARGO_PKG_VERSION")).into(),
+        machine: Machine::detect(adapter),
+        scene: prepared.source.name().into(),
+        reproduce: command_line(),
+        facts: facts(args, prepared),
+        results,
+        notes,
+    })
+}
+
+fn method_result(
+    args: &DemoArgs,
+    prepared: &Prepared,
+    reflector: &str,
+    frames: &MethodFrames,
+    gpu: Option<&GpuSide>,
+) -> MethodResult {
+    let side = gpu.filter(|_| frames.on_gpu);
+    let sampling = args.scene.preset.sampling();
+    let cube_bytes = 4 * 6 * u64::from(CUBE_SIZE).pow(2);
+    let texel_bytes: usize = prepared.capture.texels.iter().map(|texels| size_of_val(texels.texels())).sum();
+    let seconds = |time: Duration| time.as_secs_f64();
+    let (method, parameters, bytes_on_device, bytes_on_disk, preparation_s) = match frames.asked {
+        Asked::Slabs => (
+            "slabs",
+            format!(
+                "6 × {0}×{0} cameras × {1}×{1} texels, {2}",
+                sampling.cameras,
+                sampling.resolution,
+                side.map_or("decoded RGBA8", |side| side.storage.as_str())
+            ),
+            side.map_or(texel_bytes as u64, |side| side.slab_bytes),
+            Some(prepared.file_bytes),
+            seconds(prepared.capture_time + prepared.encode_time),
+        ),
+        Asked::Cube => (
+            lf_report::BASELINE_METHOD,
+            format!("6 × {CUBE_SIZE}×{CUBE_SIZE} texels, RGBA8"),
+            cube_bytes,
+            None,
+            seconds(prepared.cube_time),
+        ),
+    };
+    MethodResult {
+        reflector: reflector.to_owned(),
+        method: method.to_owned(),
+        parameters,
+        device: side.map_or("CPU".to_owned(), |side| side.gpu.name()),
+        eyes: frames.errors.clone(),
+        timing: frames.timing.clone(),
+        bytes_on_device,
+        bytes_on_disk,
+        preparation_s,
+    }
+}
+
+/// How far the GPU's slab pictures are from the CPU's, if both were drawn.
+fn parity_note(name: &str, frames: &ReflectorFrames) -> Option<String> {
+    let on = |gpu: bool| frames.methods.iter().find(|method| method.asked == Asked::Slabs && method.on_gpu == gpu);
+    let (share, worst) = agreement(&on(true)?.pictures, &on(false)?.pictures);
+    Some(format!(
+        "{name}: the slab pictures of GPU and CPU agree within 2/255 at {:.3} % of the pixels (largest difference {worst}).",
+        100.0 * share
+    ))
+}
+
+fn facts(args: &DemoArgs, prepared: &Prepared) -> Vec<(String, String)> {
+    let capture = &prepared.capture;
+    let (center, edges) = (prepared.source.cell.center(), 2.0 * prepared.source.cell.half_extent());
+    let depth = |slab: &lf_math::Slab| slab.focal_depth().map_or("∞".to_owned(), |d| format!("{d:.2}"));
+    let depths: Vec<_> = capture.geometry.slabs().iter().map(depth).collect();
+    let texels: usize = capture.texels.iter().map(|slab| slab.texels().len()).sum();
+    let bits = 8.0 * prepared.file_bytes as f64 / texels as f64;
+    [
+        ("Triangles", prepared.source.tracer.scene().triangles().len().to_string()),
+        ("Cell", format!("{:.3} m around ({:.3}, {:.3}, {:.3})", edges.x, center.x, center.y, center.z)),
+        ("Preset", args.scene.preset.name().to_owned()),
+        ("Focal depths +X −X +Y −Y +Z −Z", format!("{} m", depths.join(", "))),
+        (
+            "Capture",
+            format!("{:.1} million rays in {:.1} s", capture.rays as f64 / 1e6, prepared.capture_time.as_secs_f64()),
+        ),
+        ("Encoding", format!("{:.1} s, texels stored at {:.2} dB", prepared.encode_time.as_secs_f64(), prepared.stored_psnr)),
+        ("File", format!("{}, {bits:.2} bits a texel", megabytes(prepared.file_bytes))),
+        ("Pictures", format!("{0}×{0} pixels", args.size)),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into()
+}
+
+/// The command that was typed, for the report.
+fn command_line() -> String {
+    let words = std::env::args().skip(1).map(|word| if word.contains(' ') { format!("'{word}'") } else { word });
+    std::iter::once("lfslab".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}

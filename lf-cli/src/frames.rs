@@ -1,0 +1,172 @@
+//! The demo's frames: every method on the same eyes, timed and compared with the traced reference.
+
+use std::f32::consts::TAU;
+
+use anyhow::{Context, Result};
+use glam::Vec3;
+use lf_gpu::MirrorMesh;
+use lf_math::{GeometryError, Image, Pinhole, TriangleMesh, image_error};
+use lf_report::{EyeError, Timing, measure};
+use lf_scene::reference::{self, Mirror, Reference};
+
+use crate::device::{CpuMethod, CpuSide, GpuMethod, GpuSide, Method};
+use crate::pictures::{display, masked, over};
+use crate::sources::{EYE_DISTANCE, Source};
+
+/// Vertical field of view, radians: a reflector that fills the cell fills nine tenths of the picture.
+pub(crate) const FOV_Y: f32 = 0.67;
+/// Frames drawn before the clock counts, and frames counted, for each eye.
+const WARM_UP: usize = 1;
+const REPEATS: usize = 5;
+/// How far above the cell's centre the eyes look down from, radians.
+const ELEVATION: f32 = 0.26;
+
+/// The environments and what they hang in.
+pub(crate) struct Stage<'a> {
+    pub(crate) source: &'a Source,
+    pub(crate) cpu: &'a CpuSide,
+    pub(crate) gpu: Option<&'a GpuSide>,
+}
+
+/// Which environment a method asks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Asked {
+    Slabs,
+    Cube,
+}
+
+/// One method on one device over all eyes.
+pub(crate) struct MethodFrames {
+    pub(crate) asked: Asked,
+    pub(crate) on_gpu: bool,
+    pub(crate) timing: Timing,
+    pub(crate) errors: Vec<EyeError>,
+    /// Composed over the background, one for each eye.
+    pub(crate) pictures: Vec<Image<[u8; 4]>>,
+}
+
+/// All frames of one reflector.
+pub(crate) struct ReflectorFrames {
+    pub(crate) references: Vec<Reference>,
+    pub(crate) reference_timing: Timing,
+    /// The references composed over the background.
+    pub(crate) truth: Vec<Image<[u8; 4]>>,
+    pub(crate) methods: Vec<MethodFrames>,
+}
+
+/// `count` cameras around the cell's centre, `step` radians apart, the first at azimuth `from`; `edge` is the cell's.
+pub(crate) fn orbit(edge: f32, size: u32, from: f32, step: f32, count: u32) -> Result<Vec<Pinhole>, GeometryError> {
+    let eye = |i: u32| {
+        let azimuth = from + step * i as f32;
+        let (sin, cos) = ELEVATION.sin_cos();
+        Vec3::new(cos * azimuth.cos(), sin, cos * azimuth.sin()) * EYE_DISTANCE * edge
+    };
+    (0..count).map(|i| Pinhole::look_at(eye(i), Vec3::ZERO, FOV_Y, size, size)).collect()
+}
+
+/// The full circle of eight eyes.
+pub(crate) fn full_orbit(edge: f32, size: u32) -> Result<Vec<Pinhole>, GeometryError> {
+    orbit(edge, size, 0.0, TAU / 8.0, 8)
+}
+
+impl Stage<'_> {
+    /// The scene without a reflector, as each camera sees it.
+    pub(crate) fn backgrounds(&self, cameras: &[Pinhole]) -> Vec<Image<[u8; 4]>> {
+        let trace = |camera| display(&reference::background(&self.source.tracer, &self.source.cell, camera));
+        cameras.iter().map(trace).collect()
+    }
+
+    /// Draws, times and compares every method; `done` is called after each picture.
+    pub(crate) fn frames(
+        &self,
+        mesh: &TriangleMesh,
+        cameras: &[Pinhole],
+        backgrounds: &[Image<[u8; 4]>],
+        done: impl Fn(),
+    ) -> Result<ReflectorFrames> {
+        let mirror = Mirror::new(mesh.clone());
+        let mut references = Vec::new();
+        let timings = cameras.iter().map(|camera| {
+            let timing = measure(0, 1, || {
+                references.push(reference::render(&self.source.tracer, &self.source.cell, &mirror, camera));
+            });
+            done();
+            timing
+        });
+        let reference_timing = merged(timings.collect())?;
+        let composed = references.iter().zip(backgrounds);
+        let truth: Vec<_> = composed.map(|(r, back)| masked(&display(&r.radiance), &r.mask, back)).collect();
+        let mut methods = Vec::new();
+        let devices: &[bool] = if self.gpu.is_some() { &[true, false] } else { &[false] };
+        for (&on_gpu, asked) in devices.iter().flat_map(|gpu| [(gpu, Asked::Slabs), (gpu, Asked::Cube)]) {
+            let mut frames = self.method(asked, on_gpu, mesh, cameras, backgrounds, &done)?;
+            for (eye, (picture, (truth, reference))) in
+                frames.pictures.iter().zip(truth.iter().zip(&references)).enumerate()
+            {
+                let error = image_error(truth, picture, &reference.mask).context("the reflector is out of sight")?;
+                frames.errors.push(EyeError::new(eye, error));
+            }
+            methods.push(frames);
+        }
+        Ok(ReflectorFrames { references, reference_timing, truth, methods })
+    }
+
+    fn method(
+        &self,
+        asked: Asked,
+        on_gpu: bool,
+        mesh: &TriangleMesh,
+        cameras: &[Pinhole],
+        backgrounds: &[Image<[u8; 4]>],
+        done: &impl Fn(),
+    ) -> Result<MethodFrames> {
+        let side = self.gpu.filter(|_| on_gpu);
+        let device_mesh = side.map(|side| MirrorMesh::new(&side.gpu, mesh)).transpose()?;
+        let (mut timings, mut pictures) = (Vec::new(), Vec::new());
+        for (camera, background) in cameras.iter().zip(backgrounds) {
+            let (timing, picture) = match (side, &device_mesh, asked) {
+                (Some(side), Some(mesh), _) => {
+                    let pass = if asked == Asked::Slabs { &side.slabs } else { &side.cube };
+                    timed(GpuMethod { gpu: &side.gpu, pass, target: &side.target, mesh, camera })?
+                }
+                (_, _, Asked::Slabs) => timed(CpuMethod::new(&self.cpu.slabs, mesh, camera))?,
+                (_, _, Asked::Cube) => timed(CpuMethod::new(&self.cpu.cube, mesh, camera))?,
+            };
+            timings.push(timing);
+            pictures.push(over(&picture, background));
+            done();
+        }
+        Ok(MethodFrames { asked, on_gpu, timing: merged(timings)?, errors: vec![], pictures })
+    }
+}
+
+/// Draws a frame several times; the timing and the picture.
+fn timed(mut method: impl Method) -> Result<(Timing, Image<[u8; 4]>)> {
+    let mut outcome = Ok(());
+    let timing = measure(WARM_UP, REPEATS, || {
+        if let Err(error) = method.draw() {
+            outcome = Err(error);
+        }
+    });
+    outcome?;
+    Ok((timing, method.picture()?))
+}
+
+/// The frames of several timings as one.
+fn merged(timings: Vec<Timing>) -> Result<Timing> {
+    let samples = timings.iter().flat_map(|timing| timing.samples().to_vec()).collect();
+    Timing::from_seconds(samples).context("no frames were timed")
+}
+
+/// The share of pixels at which two sets of pictures agree within 2/255 in every channel, and the largest difference.
+pub(crate) fn agreement(a: &[Image<[u8; 4]>], b: &[Image<[u8; 4]>]) -> (f64, u8) {
+    let pairs = a.iter().zip(b).flat_map(|(a, b)| a.texels().iter().zip(b.texels()));
+    let worst = |(a, b): (&[u8; 4], &[u8; 4])| (0..3).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0);
+    let (mut all, mut close, mut largest) = (0u64, 0u64, 0);
+    for difference in pairs.map(worst) {
+        all += 1;
+        close += u64::from(difference <= 2);
+        largest = largest.max(difference);
+    }
+    (close as f64 / all.max(1) as f64, largest)
+}

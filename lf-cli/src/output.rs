@@ -1,0 +1,49 @@
+//! Files and progress.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow};
+use glam::Vec3;
+use image::ImageEncoder;
+use image::codecs::png::PngEncoder;
+use indicatif::{ProgressBar, ProgressStyle};
+use lf_format::write_atomic;
+use lf_math::Image;
+
+/// Writes a file whole or not at all.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomic(path, |file| file.write_all(bytes)).with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// An 8-bit RGBA picture as the bytes of a PNG file.
+pub(crate) fn png(picture: &Image<[u8; 4]>) -> Result<Vec<u8>> {
+    // Opaque pictures are smaller without their alpha.
+    let rgb: Vec<u8> = picture.texels().iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
+    let mut bytes = Vec::new();
+    let color = image::ExtendedColorType::Rgb8;
+    PngEncoder::new(&mut bytes).write_image(&rgb, picture.width(), picture.height(), color)?;
+    Ok(bytes)
+}
+
+/// Writes a linear picture as OpenEXR, 32-bit float RGB.
+pub(crate) fn write_exr(path: &Path, picture: &Image<Vec3>) -> Result<()> {
+    use exr::prelude::{SpecificChannels, WritableImage};
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let channels = SpecificChannels::rgb(|at: exr::math::Vec2<usize>| {
+        picture.texels()[at.y() * width + at.x()].to_array().into()
+    });
+    let mut bytes = Cursor::new(Vec::new());
+    exr::image::Image::from_channels((width, height), channels)
+        .write()
+        .to_buffered(&mut bytes)
+        .map_err(|e| anyhow!("cannot encode {}: {e}", path.display()))?;
+    write(path, bytes.get_ref())
+}
+
+/// A bar on the terminal with rate and time left; nothing where standard error is no terminal.
+pub(crate) fn progress_bar(length: u64, what: &str, unit: &str) -> ProgressBar {
+    let template = format!("{{msg:8}} {{wide_bar}} {{pos}}/{{len}} {unit}, {{per_sec}}, {{eta}} left");
+    let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(length).with_style(style).with_message(what.to_owned())
+}
