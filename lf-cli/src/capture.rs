@@ -40,14 +40,20 @@ pub(crate) fn capture(source: &Source, sampling: &Sampling) -> Result<(Capture, 
     let &Sampling { cameras, resolution, placement, grid } = sampling;
     let geometry = LightFieldGeometry::around(source.cell, placement, cameras, resolution)?;
     let images = u64::from(cameras).pow(2) * geometry.slabs().len() as u64;
-    eprintln!("capture  6 slabs of {cameras}×{cameras} cameras × {resolution}×{resolution} texels, {grid}×{grid} rays each");
+    eprintln!(
+        "capture  6 slabs of {cameras}×{cameras} cameras × {resolution}×{resolution} texels, {grid}×{grid} rays each"
+    );
     let bar = progress_bar(images, "capture", "camera images");
     let start = Instant::now();
     let captured = capture_slabs(&source.tracer, &geometry, grid, &|done| bar.set_position(done))?;
     bar.finish_and_clear();
     let elapsed = start.elapsed();
     let rate = captured.rays as f64 / elapsed.as_secs_f64() / 1e6;
-    eprintln!("         {:.1} s, {:.1} million rays, {rate:.2} million a second", elapsed.as_secs_f64(), captured.rays as f64 / 1e6);
+    eprintln!(
+        "         {:.1} s, {:.1} million rays, {rate:.2} million a second",
+        elapsed.as_secs_f64(),
+        captured.rays as f64 / 1e6
+    );
     Ok((captured, elapsed))
 }
 

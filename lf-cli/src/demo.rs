@@ -40,7 +40,10 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
     let start = Instant::now();
     std::fs::create_dir_all(&args.out).with_context(|| format!("cannot make the folder {}", args.out.display()))?;
     let source = Source::load(&args.scene)?;
-    let names = ["sphere", args.reflector.as_deref().map_or(Some("teapot"), Path::to_str).context("--reflector: the path is not UTF-8")?];
+    let names = [
+        "sphere",
+        args.reflector.as_deref().map_or(Some("teapot"), Path::to_str).context("--reflector: the path is not UTF-8")?,
+    ];
     // Read before the long work, so that a bad file is known at once.
     let reflectors = names.iter().map(|name| reflector(name, &source.cell)).collect::<Result<Vec<_>>>()?;
 
@@ -168,7 +171,7 @@ fn report(
     frames: &[(String, ReflectorFrames)],
     gpu: Option<&GpuSide>,
 ) -> Result<Report> {
-    let adapter = gpu.map(|side| side.gpu.name());
+    let adapter = gpu.map(|side| side.gpu.description());
     let mut results = Vec::new();
     for (name, frames) in frames {
         results.extend(frames.methods.iter().map(|method| method_result(args, prepared, name, method, gpu)));
@@ -186,7 +189,8 @@ fn report(
     }
     let mut notes = vec![
         "PSNR is over the reflector's pixels of 8-bit sRGB pictures, against one traced ray per pixel.".to_owned(),
-        "The reference reflects the surroundings once; the reflector's image in itself is left out in all methods.".to_owned(),
+        "The reference reflects the surroundings once; the reflector's image in itself is left out in all methods."
+            .to_owned(),
     ];
     notes.extend(frames.iter().filter_map(|(name, frames)| parity_note(name, frames)));
     Ok(Report {
@@ -273,7 +277,10 @@ fn facts(args: &DemoArgs, prepared: &Prepared) -> Vec<(String, String)> {
             "Capture",
             format!("{:.1} million rays in {:.1} s", capture.rays as f64 / 1e6, prepared.capture_time.as_secs_f64()),
         ),
-        ("Encoding", format!("{:.1} s, texels stored at {:.2} dB", prepared.encode_time.as_secs_f64(), prepared.stored_psnr)),
+        (
+            "Encoding",
+            format!("{:.1} s, texels stored at {:.2} dB", prepared.encode_time.as_secs_f64(), prepared.stored_psnr),
+        ),
         ("File", format!("{}, {bits:.2} bits a texel", megabytes(prepared.file_bytes))),
         ("Pictures", format!("{0}×{0} pixels", args.size)),
     ]

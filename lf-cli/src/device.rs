@@ -14,7 +14,7 @@ pub(crate) fn open_gpu(cpu_only: bool) -> Option<Gpu> {
     }
     match Gpu::new() {
         Ok(gpu) => {
-            eprintln!("device   {}", gpu.name());
+            eprintln!("device   {}", gpu.description());
             Some(gpu)
         }
         Err(error) => {

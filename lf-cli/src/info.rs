@@ -52,21 +52,24 @@ pub(crate) fn info(path: &Path) -> Result<()> {
     let cell = container.geometry().cell();
     println!("cell: centre {} m, edges {} m", cell.center(), 2.0 * cell.half_extent());
     for (number, (slab, tiling)) in container.geometry().slabs().iter().zip(container.tilings()).enumerate() {
-        let chunks = || container.chunks().filter(|chunk| chunk.slab as usize == number && chunk.tag == lf_format::Tag::TILE);
+        let chunks =
+            || container.chunks().filter(|chunk| chunk.slab as usize == number && chunk.tag == lf_format::Tag::TILE);
         let stored: u64 = chunks().map(|chunk| chunk.stored_len).sum();
         let raw: u64 = chunks().map(|chunk| chunk.raw_len).sum();
         println!("slab {number}: {}", describe(slab));
         let ([gs, gt], tiles) = (tiling.cameras_per_tile(), tiling.tile_count());
         let share = 100.0 * stored as f64 / raw as f64;
-        println!("  {:?}, {tiles} tiles of {gs}×{gt} cameras, {stored} bytes packed of {raw} ({share:.1} %)", tiling.encoding());
+        println!(
+            "  {:?}, {tiles} tiles of {gs}×{gt} cameras, {stored} bytes packed of {raw} ({share:.1} %)",
+            tiling.encoding()
+        );
     }
     Ok(())
 }
 
 fn describe(slab: &Slab) -> String {
-    let range = |[a, b]: [SampledAxis; 2]| {
-        format!("{:.4} … {:.4} × {:.4} … {:.4}", a.first(), a.last(), b.first(), b.last())
-    };
+    let range =
+        |[a, b]: [SampledAxis; 2]| format!("{:.4} … {:.4} × {:.4} … {:.4}", a.first(), a.last(), b.first(), b.last());
     let ([cameras_s, cameras_t], [width, height]) = (slab.cameras(), slab.resolution());
     let focus = slab.focal_depth().map_or("infinity".to_owned(), |depth| format!("{depth:.4} m"));
     format!(

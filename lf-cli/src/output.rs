@@ -30,9 +30,8 @@ pub(crate) fn png(picture: &Image<[u8; 4]>) -> Result<Vec<u8>> {
 pub(crate) fn write_exr(path: &Path, picture: &Image<Vec3>) -> Result<()> {
     use exr::prelude::{SpecificChannels, WritableImage};
     let (width, height) = (picture.width() as usize, picture.height() as usize);
-    let channels = SpecificChannels::rgb(|at: exr::math::Vec2<usize>| {
-        picture.texels()[at.y() * width + at.x()].to_array().into()
-    });
+    let channels =
+        SpecificChannels::rgb(|at: exr::math::Vec2<usize>| picture.texels()[at.y() * width + at.x()].to_array().into());
     let mut bytes = Cursor::new(Vec::new());
     exr::image::Image::from_channels((width, height), channels)
         .write()

@@ -14,9 +14,9 @@ mod packed;
 pub mod volume;
 mod zstd_tile;
 
-pub use packed::{PackError, PackedLightField};
 /// The container crate, whose types the packed light field speaks.
 pub use lf_format as format;
+pub use packed::{PackError, PackedLightField};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

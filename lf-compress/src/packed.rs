@@ -136,7 +136,8 @@ impl PackedLightField {
     fn decode_slab(&self, slab: usize) -> Result<SlabTexels, PackError> {
         let geometry = &self.geometry.slabs()[slab];
         let tiling = &self.tilings[slab];
-        let pictures = self.tiles[slab].par_iter().map(|raw| decode_picture(raw, tiling)).collect::<Result<Vec<_>, _>>()?;
+        let pictures =
+            self.tiles[slab].par_iter().map(|raw| decode_picture(raw, tiling)).collect::<Result<Vec<_>, _>>()?;
         let [cameras_s, cameras_t] = geometry.cameras();
         let [width, height] = geometry.resolution();
         let mut texels = Vec::with_capacity(cameras_s as usize * cameras_t as usize * width as usize * height as usize);
@@ -144,7 +145,8 @@ impl PackedLightField {
             for s in 0..cameras_s {
                 let (tile, [x, y]) = place_of(tiling, [s, t]);
                 let picture = &pictures[tile as usize];
-                let rows = picture.texels().chunks_exact(picture.width() as usize).skip(y as usize).take(height as usize);
+                let rows =
+                    picture.texels().chunks_exact(picture.width() as usize).skip(y as usize).take(height as usize);
                 texels.extend(rows.flat_map(|row| &row[x as usize..][..width as usize]));
             }
         }

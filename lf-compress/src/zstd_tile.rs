@@ -35,7 +35,7 @@ mod tests {
 
     #[test]
     fn frames_round_trip_and_anything_else_is_refused() {
-        let raw: Vec<u8> = (0..10_000u32).map(|i| (i * i >> 7) as u8).collect();
+        let raw: Vec<u8> = (0..10_000u32).map(|i| ((i * i) >> 7) as u8).collect();
         let frame = pack(&raw).expect("packs");
         assert_eq!(unpack(&frame, raw.len()), Ok(raw.clone()));
         assert!(unpack(&frame, raw.len() - 1).is_err());

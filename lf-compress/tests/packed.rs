@@ -1,9 +1,9 @@
 //! Whole light fields through encoder, container and back.
 
 use glam::DVec3;
+use lf_compress::PackedLightField;
 use lf_compress::bc1::Quality;
 use lf_compress::format::{Container, Limits, Metadata, TexelEncoding};
-use lf_compress::PackedLightField;
 use lf_math::{Cell, Face, LightFieldGeometry, SampledAxis, Slab, SlabTexels};
 
 /// Two slabs of uneven sizes with smooth texels.

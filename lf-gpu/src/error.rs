@@ -9,7 +9,9 @@ use crate::storage::Storage;
 #[non_exhaustive]
 pub enum GpuError {
     /// No Vulkan, Metal or Direct3D 12 adapter was found.
-    #[error("no GPU adapter found (Vulkan, Metal or Direct3D 12); on Debian, mesa-vulkan-drivers is a software one: {0}")]
+    #[error(
+        "no GPU adapter found (Vulkan, Metal or Direct3D 12); on Debian, mesa-vulkan-drivers is a software one: {0}"
+    )]
     NoAdapter(#[from] wgpu::RequestAdapterError),
     /// The adapter gave no device.
     #[error("the GPU adapter gives no device: {0}")]

@@ -50,9 +50,15 @@ impl Gpu {
         Ok(Self { device, queue, info: adapter.get_info() })
     }
 
-    /// Name, kind, API and driver of the adapter.
+    /// Name and API of the adapter.
     #[must_use]
     pub fn name(&self) -> String {
+        format!("{}, {}", self.info.name, self.info.backend)
+    }
+
+    /// Name, kind, API and driver of the adapter.
+    #[must_use]
+    pub fn description(&self) -> String {
         describe(&self.info)
     }
 

@@ -69,7 +69,8 @@ impl MirrorMesh {
     /// # Errors
     /// If the device is out of memory.
     pub fn new(gpu: &Gpu, mesh: &TriangleMesh) -> Result<Self, GpuError> {
-        let vertices: Vec<[Vec3; 2]> = mesh.positions().iter().copied().zip(mesh.normals().iter().copied()).map(Into::into).collect();
+        let vertices: Vec<[Vec3; 2]> =
+            mesh.positions().iter().copied().zip(mesh.normals().iter().copied()).map(Into::into).collect();
         let (min, max) = mesh.bounds();
         let ball = (0.5 * (min + max), 0.5 * (max - min).length());
         gpu.checked("the mirror's buffers", || Self {
@@ -119,11 +120,7 @@ impl ReflectionPass {
         })
     }
 
-    fn new<'a>(
-        gpu: &Gpu,
-        source: &str,
-        resources: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>,
-    ) -> Self {
+    fn new<'a>(gpu: &Gpu, source: &str, resources: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>) -> Self {
         let pipeline = mirror_pipeline(gpu, source);
         let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
@@ -217,7 +214,7 @@ fn mirror_pipeline(gpu: &Gpu, source: &str) -> wgpu::RenderPipeline {
 }
 
 fn cube_texture(gpu: &Gpu, cube: &CubeMap) -> wgpu::TextureView {
-    let texels: Vec<[u8; 4]> = cube.faces().iter().flat_map(|face| face.texels()).copied().collect();
+    let texels: Vec<[u8; 4]> = cube.faces().iter().flat_map(lf_math::Image::texels).copied().collect();
     let descriptor = wgpu::TextureDescriptor {
         label: Some("environment map"),
         size: wgpu::Extent3d { width: cube.size(), height: cube.size(), depth_or_array_layers: 6 },

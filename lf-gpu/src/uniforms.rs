@@ -121,8 +121,23 @@ mod tests {
         let module = wgpu::naga::front::wgsl::parse_str(&source).expect("the shader parses");
         same_layout!(&module, "Frame", FrameUniform, clip_from_cell, eye, padding);
         same_layout!(
-            &module, "Slab", SlabUniform, st_first, st_step, uv_first, uv_step, st_last, uv_last, disparity, plane,
-            present, pitch, cameras_per_slice, first_slice, groups_s, padding
+            &module,
+            "Slab",
+            SlabUniform,
+            st_first,
+            st_step,
+            uv_first,
+            uv_step,
+            st_last,
+            uv_last,
+            disparity,
+            plane,
+            present,
+            pitch,
+            cameras_per_slice,
+            first_slice,
+            groups_s,
+            padding
         );
         same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, faces);
         same_layout!(&module, "Probe", ProbeUniform, uv, camera, face, padding);

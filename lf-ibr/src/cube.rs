@@ -51,7 +51,9 @@ fn bordered(cube: &CubeMap, face: Face) -> Image<[u8; 4]> {
     }
     // Three faces meet at a corner, where a fourth texel does not exist: the mean of the other three.
     let far = size + 1;
-    for ([x, y], [ix, iy]) in [([0, 0], [1, 1]), ([far, 0], [size, 1]), ([0, far], [1, size]), ([far, far], [size, size])] {
+    for ([x, y], [ix, iy]) in
+        [([0, 0], [1, 1]), ([far, 0], [size, 1]), ([0, far], [1, size]), ([far, far], [size, size])]
+    {
         let three = [image.get(ix, y), image.get(x, iy), image.get(ix, iy)];
         let mean = std::array::from_fn(|c| (three.iter().map(|t| u32::from(t[c])).sum::<u32>() / 3) as u8);
         set(&mut image, x, y, mean);

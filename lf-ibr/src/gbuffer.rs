@@ -148,7 +148,8 @@ impl Target {
         for y in range(1, self.fragments.height()) {
             for x in range(0, self.fragments.width()) {
                 let center = [x, y].map(|v| (i64::from(v) * 2 + 1) * (SUBPIXEL as i64 / 2));
-                let shares = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| (edge(points[i], points[j], center), points[i], points[j]));
+                let shares =
+                    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| (edge(points[i], points[j], center), points[i], points[j]));
                 if shares.iter().all(|&(e, from, to)| e > 0 || (e == 0 && is_top_left(from, to))) {
                     self.cover(x, y, &corners, shares.map(|(e, ..)| e as f32 / area as f32));
                 }
@@ -169,7 +170,8 @@ impl Target {
             let [p, q, r] = [0, 1, 2].map(|i| f(&corners[i].fragment));
             (p * a + q * b + r * c) / inverse_depth
         };
-        self.fragments.texels_mut()[index] = Some(Fragment { position: blend(&|f| f.position), normal: blend(&|f| f.normal) });
+        self.fragments.texels_mut()[index] =
+            Some(Fragment { position: blend(&|f| f.position), normal: blend(&|f| f.normal) });
     }
 }
 

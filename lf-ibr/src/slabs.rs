@@ -99,8 +99,7 @@ mod tests {
         let mut texels = field.texels.clone();
         texels.pop();
         assert!(SlabField::new(field.geometry.clone(), texels).is_err());
-        let coarse =
-            LightFieldGeometry::around(*field.geometry.cell(), PlanePlacement::CellFaces, 4, 9).unwrap();
+        let coarse = LightFieldGeometry::around(*field.geometry.cell(), PlanePlacement::CellFaces, 4, 9).unwrap();
         assert!(SlabField::new(coarse, field.texels).is_err());
     }
 

@@ -60,12 +60,7 @@ impl LightFieldGeometry {
     ///
     /// # Errors
     /// Both counts must be at least 1.
-    pub fn around(
-        cell: Cell,
-        placement: PlanePlacement,
-        cameras: u32,
-        resolution: u32,
-    ) -> Result<Self, GeometryError> {
+    pub fn around(cell: Cell, placement: PlanePlacement, cameras: u32, resolution: u32) -> Result<Self, GeometryError> {
         let slopes = SampledAxis::spanning(-1.0, 1.0, resolution)?;
         let half = cell.half_extent();
         let slab = |face: Face| {

@@ -47,7 +47,8 @@ impl TriangleBvh {
     pub(crate) fn nearest(&self, origin: Vec3, direction: Vec3) -> Option<Hit> {
         let sheared = ShearedRay::new(origin, direction)?;
         let mut nearest = RayHit::none();
-        let distance = |ray: &Ray, i: usize| sheared.hit(&self.triangles[i], ray.tmax).map_or(f32::INFINITY, |(t, _)| t);
+        let distance =
+            |ray: &Ray, i: usize| sheared.hit(&self.triangles[i], ray.tmax).map_or(f32::INFINITY, |(t, _)| t);
         if !self.bvh.ray_traverse(Ray::new_inf(origin.into(), direction.into()), &mut nearest, distance) {
             return None;
         }

@@ -250,7 +250,20 @@ mod tests {
         for slab in capture.geometry.slabs() {
             // The far wall is 2.5 m from the camera plane; side walls are nearer.
             let depth = slab.focal_depth().unwrap();
-            assert!((1.5..2.5001).contains(&depth), "{depth}");
+            // A bin is 1/512 m⁻¹ wide here, 0.6 % at this depth.
+            assert!((1.5..2.52).contains(&depth), "{depth}");
+        }
+    }
+
+    /// A thing that touches the camera plane has an inverse depth without bound; it must not decide for all.
+    #[test]
+    fn a_thing_in_the_camera_plane_does_not_pull_the_focus() {
+        let cell = Cell::cube(DVec3::ZERO, 1.0).unwrap();
+        let through_center = LightFieldGeometry::around(cell, PlanePlacement::CellCenter, 7, 9).unwrap();
+        let capture = capture_slabs(&box_scene(true), &through_center, 1, &|_| ()).unwrap();
+        for slab in capture.geometry.slabs() {
+            let depth = slab.focal_depth().unwrap();
+            assert!((1.5..3.1).contains(&depth), "{}: {depth}", slab.face().name());
         }
     }
 

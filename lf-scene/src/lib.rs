@@ -30,4 +30,4 @@ pub use import::{Imported, import_gltf, import_obj};
 pub use light::{Light, Lighting};
 pub use material::{Material, Pattern, Surface, Texture};
 pub use scene::{Scene, SceneBuilder, Vertex};
-pub use tracer::{Tracer, Traced};
+pub use tracer::{Traced, Tracer};

@@ -88,7 +88,8 @@ mod tests {
         for i in 0..2000 {
             let angle = 2.399_963_2 * i as f32;
             let offset = 0.39 * (i as f32 / 2000.0).sqrt();
-            let ray = Ray { origin: Vec3::new(offset * angle.cos(), offset * angle.sin(), 2.0), direction: Vec3::NEG_Z };
+            let ray =
+                Ray { origin: Vec3::new(offset * angle.cos(), offset * angle.sin(), 2.0), direction: Vec3::NEG_Z };
             let reflected = mirror.reflected(&ray).expect("inside the silhouette");
             // Closed form: the normal of a parallel ray at this offset.
             let n = Vec3::new(ray.origin.x, ray.origin.y, (0.16 - offset * offset).sqrt()) / 0.4;

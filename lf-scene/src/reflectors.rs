@@ -110,12 +110,10 @@ fn numbers<T: std::str::FromStr>(line: &str) -> Vec<T> {
 fn bezier(patch: &[Vec3; 16], u: f32, v: f32) -> (Vec3, Vec3, Vec3) {
     let basis = |t: f32| {
         let s = 1.0 - t;
-        ([s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t], [
-            -3.0 * s * s,
-            3.0 * s * (s - 2.0 * t),
-            3.0 * t * (2.0 * s - t),
-            3.0 * t * t,
-        ])
+        (
+            [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t],
+            [-3.0 * s * s, 3.0 * s * (s - 2.0 * t), 3.0 * t * (2.0 * s - t), 3.0 * t * t],
+        )
     };
     let ((bu, du), (bv, dv)) = (basis(u), basis(v));
     let sum = |wu: &[f32; 4], wv: &[f32; 4]| (0..16).map(|i| patch[i] * wu[i % 4] * wv[i / 4]).sum();

@@ -72,7 +72,10 @@ impl Scene {
 
 fn bounds(triangles: &[([Vertex; 3], u32)]) -> (Vec3, Vec3) {
     let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    triangles.iter().flat_map(|(corners, _)| corners).fold(none, |(min, max), v| (min.min(v.position), max.max(v.position)))
+    triangles
+        .iter()
+        .flat_map(|(corners, _)| corners)
+        .fold(none, |(min, max), v| (min.min(v.position), max.max(v.position)))
 }
 
 impl SceneBuilder {
@@ -102,11 +105,8 @@ impl SceneBuilder {
     /// Adds a parallelogram from `corner` along `u` and `v`, facing `u × v`; texture coordinates run from 0 to `uv_scale`.
     pub fn parallelogram(&mut self, corner: Vec3, u: Vec3, v: Vec3, uv_scale: Vec2, material: u32) {
         let normal = u.cross(v);
-        let vertex = |a: f32, b: f32| Vertex {
-            position: corner + u * a + v * b,
-            normal,
-            uv: Vec2::new(a, b) * uv_scale,
-        };
+        let vertex =
+            |a: f32, b: f32| Vertex { position: corner + u * a + v * b, normal, uv: Vec2::new(a, b) * uv_scale };
         let quad = [vertex(0.0, 0.0), vertex(1.0, 0.0), vertex(1.0, 1.0), vertex(0.0, 1.0)];
         self.triangle([quad[0], quad[1], quad[2]], material);
         self.triangle([quad[0], quad[2], quad[3]], material);

@@ -103,8 +103,7 @@ mod tests {
 
     #[test]
     fn point_light_follows_the_cosine_and_inverse_square_laws() {
-        let tracer =
-            lit_floor(vec![Light::Point { position: Vec3::new(0.0, 3.0, 0.0), intensity: Vec3::splat(9.0) }]);
+        let tracer = lit_floor(vec![Light::Point { position: Vec3::new(0.0, 3.0, 0.0), intensity: Vec3::splat(9.0) }]);
         for x in [0.0f32, 1.0, 2.5] {
             let traced = tracer.trace(Vec3::new(x, 0.5, 0.1), Vec3::new(0.0, -2.0, 0.0));
             let r2 = f64::from(x * x) + 9.0 + 0.01;

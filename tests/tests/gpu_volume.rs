@@ -44,7 +44,8 @@ fn field(encoding: TexelEncoding) -> (PackedLightField, Vec<SlabTexels>) {
 
 /// Corners, edges and the middle of an axis.
 fn picks(count: u32) -> Vec<u32> {
-    let mut picks: Vec<_> = [0, 1, 3, 4, count / 2, count.saturating_sub(2), count - 1].map(|i| i.min(count - 1)).into();
+    let mut picks: Vec<_> =
+        [0, 1, 3, 4, count / 2, count.saturating_sub(2), count - 1].map(|i| i.min(count - 1)).into();
     picks.sort_unstable();
     picks.dedup();
     picks
@@ -78,7 +79,7 @@ fn check(gpu: &Gpu, packed: &PackedLightField, decoded: &[SlabTexels], storage: 
 #[test]
 fn every_storage_reads_every_texel_as_the_cpu_does() {
     let gpu = gpu();
-    println!("adapter: {}", gpu.name());
+    println!("adapter: {}", gpu.description());
     let (packed, decoded) = field(TexelEncoding::Bc1);
     for storage in Storage::ALL {
         check(&gpu, &packed, &decoded, storage);

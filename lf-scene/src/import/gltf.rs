@@ -4,16 +4,17 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::{Mat3, Mat4, Vec2, Vec3};
-use gltf::Document;
 use gltf::buffer::Data as Buffer;
 use gltf::image::{Data as Picture, Format};
+use gltf::mesh::Mode;
+use gltf::{Document, Gltf};
 use lf_math::{GeometryError, Image, normalized};
 
 use super::Imported;
+use crate::SceneError;
 use crate::light::{Light, Lighting};
 use crate::material::{Material, Surface, Texture};
 use crate::scene::{SceneBuilder, Vertex};
-use crate::SceneError;
 
 /// Reads a `.glb` or `.gltf` file.
 ///
@@ -25,10 +26,8 @@ use crate::SceneError;
 /// # Errors
 /// If the file cannot be read or parsed, refers outside its buffers, or has no triangles.
 pub fn import_gltf(path: &Path) -> Result<Imported, SceneError> {
-    let (document, buffers, pictures) =
-        gltf::import(path).map_err(|source| SceneError::Gltf { path: path.to_owned(), source: Box::new(source) })?;
     let broken = |source| SceneError::Broken { path: path.to_owned(), source };
-    check_accessors(&document, &buffers).map_err(broken)?;
+    let File { document, buffers, pictures } = read(path)?;
     let mut import = Import { buffers, builder: SceneBuilder::default(), lights: vec![], camera: None, left_out: 0 };
     let textures = pictures.iter().map(texture).collect::<Result<Vec<_>, _>>().map_err(broken)?;
     for material in document.materials() {
@@ -36,19 +35,39 @@ pub fn import_gltf(path: &Path) -> Result<Imported, SceneError> {
     }
     import.builder.material(Material::diffuse(Vec3::splat(0.8)));
     if let Some(scene) = document.default_scene().or_else(|| document.scenes().next()) {
-        for node in scene.nodes() {
-            import.node(&node, Mat4::IDENTITY, document.materials().len() as u32);
-        }
+        import.nodes(&document, &scene);
     }
     let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
     let warnings = warnings(&document, import.left_out);
-    let lighting = import.lighting(sun_direction(&document));
     if import.builder.is_empty() {
         return Err(SceneError::NoTriangles { path: path.to_owned() });
     }
+    let lighting = import.lighting(sun_direction(&document));
     let scene = import.builder.build(&name, lighting).map_err(broken)?;
     let copyright = document.as_json().asset.copyright.clone();
     Ok(Imported { scene, camera: import.camera, copyright, warnings })
+}
+
+/// A file taken apart and checked.
+struct File {
+    document: Document,
+    buffers: Vec<Buffer>,
+    pictures: Vec<Picture>,
+}
+
+/// Reads a file. The `gltf` crate panics on some numbers that point nowhere; they are looked for first.
+fn read(path: &Path) -> Result<File, SceneError> {
+    let unreadable = |source| SceneError::Gltf { path: path.to_owned(), source: Box::new(source) };
+    let broken = |source| SceneError::Broken { path: path.to_owned(), source };
+    let bytes = std::fs::read(path).map_err(|e| unreadable(gltf::Error::Io(e)))?;
+    let unchecked = Gltf::from_slice_without_validation(&bytes).map_err(unreadable)?;
+    check_attributes(unchecked.document.as_json()).map_err(broken)?;
+    let Gltf { document, blob } = Gltf::from_slice(&bytes).map_err(unreadable)?;
+    let base = Some(path.parent().unwrap_or_else(|| Path::new("./")));
+    let buffers = gltf::import_buffers(&document, base, blob).map_err(unreadable)?;
+    check_views(&document, &buffers).map_err(broken)?;
+    let pictures = gltf::import_images(&document, base, &buffers).map_err(unreadable)?;
+    Ok(File { document, buffers, pictures })
 }
 
 /// What is gathered while walking the node tree.
@@ -61,8 +80,22 @@ struct Import {
 }
 
 impl Import {
-    fn node(&mut self, node: &gltf::Node<'_>, world_from_parent: Mat4, plain: u32) {
-        let world_from_node = world_from_parent * Mat4::from_cols_array_2d(&node.transform().matrix());
+    /// Walks the node tree. Each node is visited once, so that a file whose nodes form a ring comes to an end.
+    fn nodes(&mut self, document: &Document, scene: &gltf::Scene<'_>) {
+        let plain = document.materials().len() as u32;
+        let mut visited = vec![false; document.nodes().len()];
+        let mut open: Vec<_> = scene.nodes().map(|node| (node, Mat4::IDENTITY)).collect();
+        while let Some((node, world_from_parent)) = open.pop() {
+            if std::mem::replace(&mut visited[node.index()], true) {
+                continue;
+            }
+            let world_from_node = world_from_parent * Mat4::from_cols_array_2d(&node.transform().matrix());
+            self.node(&node, world_from_node, plain);
+            open.extend(node.children().map(|child| (child, world_from_node)));
+        }
+    }
+
+    fn node(&mut self, node: &gltf::Node<'_>, world_from_node: Mat4, plain: u32) {
         let (position, forward) = (world_from_node.w_axis.truncate(), -world_from_node.z_axis.truncate());
         if node.camera().is_some() {
             self.camera.get_or_insert((position, forward));
@@ -73,15 +106,12 @@ impl Import {
         for primitive in node.mesh().iter().flat_map(gltf::Mesh::primitives) {
             self.primitive(&primitive, world_from_node, plain);
         }
-        for child in node.children() {
-            self.node(&child, world_from_node, plain);
-        }
     }
 
     fn primitive(&mut self, primitive: &gltf::Primitive<'_>, world_from_node: Mat4, plain: u32) {
         let material = primitive.material();
         let clear = material.transmission().is_some_and(|t| t.transmission_factor() > 0.5);
-        if clear || primitive.mode() != gltf::mesh::Mode::Triangles {
+        if clear || primitive.mode() != Mode::Triangles || !is_readable(primitive) {
             self.left_out += 1;
             return;
         }
@@ -92,8 +122,12 @@ impl Import {
         let turn = Mat3::from_mat4(world_from_node).inverse().transpose();
         let normals: Vec<_> = reader.read_normals().into_iter().flatten().map(|n| turn * Vec3::from(n)).collect();
         let set = material.pbr_metallic_roughness().base_color_texture().map_or(0, |info| info.tex_coord());
-        let uvs: Vec<_> =
-            reader.read_tex_coords(set).into_iter().flat_map(|uvs| uvs.into_f32()).map(Vec2::from).collect();
+        let uvs: Vec<_> = reader
+            .read_tex_coords(set)
+            .into_iter()
+            .flat_map(gltf::mesh::util::ReadTexCoords::into_f32)
+            .map(Vec2::from)
+            .collect();
         let indices: Vec<u32> = match reader.read_indices() {
             Some(indices) => indices.into_u32().collect(),
             None => (0..positions.len() as u32).collect(),
@@ -175,19 +209,55 @@ fn texture(picture: &Picture) -> Result<Arc<Texture>, GeometryError> {
     Ok(Arc::new(Texture { image: Image::new(picture.width, picture.height, texels.collect())? }))
 }
 
-/// Refuses accessors that reach outside their buffers, which the reader would panic on.
-fn check_accessors(document: &Document, buffers: &[Buffer]) -> Result<(), GeometryError> {
+/// Refuses attributes that name no accessor.
+fn check_attributes(json: &gltf::json::Root) -> Result<(), GeometryError> {
+    let primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    for index in primitives.flat_map(|primitive| primitive.attributes.values()) {
+        if index.value() >= json.accessors.len() {
+            return Err(GeometryError::VertexIndex { index: index.value() as u32, vertices: json.accessors.len() });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses views and accessors that reach outside their buffers.
+fn check_views(document: &Document, buffers: &[Buffer]) -> Result<(), GeometryError> {
+    for view in document.views() {
+        let len = buffers.get(view.buffer().index()).map_or(0, |data| data.0.len());
+        let expected = view.offset().saturating_add(view.length());
+        if expected > len {
+            return Err(GeometryError::Length { what: "a buffer", len, expected });
+        }
+    }
     for accessor in document.accessors() {
         let Some(view) = accessor.view() else { continue };
         let stride = view.stride().unwrap_or(accessor.size());
         let last = accessor.count().saturating_sub(1).saturating_mul(stride);
-        let end = accessor.offset().saturating_add(last).saturating_add(accessor.size());
-        let len = buffers.get(view.buffer().index()).map_or(0, |data| data.0.len());
-        if end > view.length() || view.offset().saturating_add(view.length()) > len {
-            return Err(GeometryError::Length { what: "an accessor's buffer", len, expected: end });
+        let expected = accessor.offset().saturating_add(last).saturating_add(accessor.size());
+        if expected > view.length() {
+            return Err(GeometryError::Length { what: "a buffer view", len: view.length(), expected });
         }
     }
     Ok(())
+}
+
+/// Whether a primitive's accessors have the types that glTF allows and no sparse parts.
+fn is_readable(primitive: &gltf::Primitive<'_>) -> bool {
+    use gltf::Semantic::{Normals, Positions, TexCoords};
+    use gltf::accessor::{DataType, Dimensions};
+    let integer = |t| matches!(t, DataType::U8 | DataType::U16 | DataType::U32);
+    let plain = |a: &gltf::Accessor<'_>| a.view().is_some() && a.sparse().is_none();
+    let indices =
+        primitive.indices().is_none_or(|a| plain(&a) && a.dimensions() == Dimensions::Scalar && integer(a.data_type()));
+    let attribute = |(semantic, a): (gltf::Semantic, gltf::Accessor<'_>)| match semantic {
+        Positions | Normals => plain(&a) && a.dimensions() == Dimensions::Vec3 && a.data_type() == DataType::F32,
+        TexCoords(_) => {
+            let small = matches!(a.data_type(), DataType::U8 | DataType::U16 | DataType::F32);
+            plain(&a) && a.dimensions() == Dimensions::Vec2 && small
+        }
+        _ => true,
+    };
+    indices && primitive.attributes().all(attribute)
 }
 
 fn sun_direction(document: &Document) -> Option<Vec3> {
@@ -207,7 +277,7 @@ fn warnings(document: &Document, left_out: usize) -> Vec<String> {
         }
     };
     let materials = || document.materials();
-    warn(left_out, "transmissive or non-triangle primitives are left out");
+    warn(left_out, "primitives are left out: transmissive, not triangles, or of types this program does not read");
     warn(materials().filter(|m| m.normal_texture().is_some()).count(), "normal maps are not used");
     let metallic = |m: &gltf::Material<'_>| m.pbr_metallic_roughness().metallic_factor() > 0.5;
     warn(materials().filter(metallic).count(), "metallic materials are shaded as diffuse");

@@ -1,0 +1,154 @@
+//! The program as a stranger runs it: good runs, bad input, exit codes, no leftovers.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+fn lfslab(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lfslab")).args(arguments).output().expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Asserts exit code 1 and one line of error that holds all the given words.
+fn fails_saying(output: &Output, words: &[&str]) {
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    let errors: Vec<_> = stderr.lines().filter(|line| line.starts_with("error: ") && !line.contains("XDG_")).collect();
+    assert_eq!(errors.len(), 1, "{stderr}");
+    for word in words {
+        assert!(errors[0].contains(word), "{:?} lacks {word:?}", errors[0]);
+    }
+    assert!(!stderr.contains("panicked"), "{stderr}");
+}
+
+/// A small light field of the museum.
+fn small_file(folder: &Path) -> String {
+    let path = folder.join("small.lfslab").to_string_lossy().into_owned();
+    let output = lfslab(&["capture", "--cameras", "3", "--resolution", "10", "--out", &path]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    path
+}
+
+#[test]
+fn every_command_has_help() {
+    for command in ["demo", "capture", "render", "info", "validate"] {
+        let output = lfslab(&[command, "--help"]);
+        assert!(output.status.success());
+        assert!(text(&output.stdout).contains("Usage: lfslab"), "{command}");
+    }
+    assert_eq!(lfslab(&["nonsense"]).status.code(), Some(2));
+}
+
+#[test]
+fn a_captured_file_is_shown_checked_and_rendered() {
+    let folder = TempDir::new().unwrap();
+    let file = small_file(folder.path());
+    let info = text(&lfslab(&["info", &file]).stdout);
+    for part in ["lfslab 1.0", "scene: museum", "3×3 cameras", "10×10 texels", "slab 5: -Z"] {
+        assert!(info.contains(part), "{info}");
+    }
+    assert!(text(&lfslab(&["validate", &file]).stdout).contains("valid (6 slabs, 6 tiles)"));
+    for (name, device) in [("cpu.png", &["--cpu"][..]), ("any.png", &[])] {
+        let picture = folder.path().join(name).to_string_lossy().into_owned();
+        let output = lfslab(&[&["render", &file, "--out", &picture, "--size", "64"], device].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(text(&output.stderr).contains("device"), "says which device drew");
+        let decoded = image::open(&picture).unwrap().to_rgb8();
+        assert_eq!(decoded.dimensions(), (64, 64));
+        // The corner is background, the middle is the mirror.
+        assert_eq!(decoded.get_pixel(0, 0).0, [40, 40, 44]);
+        assert_ne!(decoded.get_pixel(32, 32).0, [40, 40, 44]);
+    }
+}
+
+#[test]
+fn the_same_scene_gives_the_same_file() {
+    let folders = [TempDir::new().unwrap(), TempDir::new().unwrap()];
+    let [a, b] = folders.each_ref().map(|folder| fs::read(small_file(folder.path())).unwrap());
+    assert!(a == b, "two captures differ");
+}
+
+#[test]
+fn bad_files_are_named_with_what_is_wrong() {
+    let folder = TempDir::new().unwrap();
+    let file = small_file(folder.path());
+    let good = fs::read(&file).unwrap();
+    let bad = folder.path().join("bad.lfslab").to_string_lossy().into_owned();
+    let mut flipped = good.clone();
+    let last = flipped.len() - 100;
+    flipped[last] ^= 1;
+    for (bytes, words) in [
+        (vec![], &["bad.lfslab"][..]),
+        (b"\x89PNG\r\n\x1a\n and so on".to_vec(), &["bad.lfslab", "not"]),
+        (good[..good.len() / 2].to_vec(), &["bad.lfslab"]),
+        (flipped, &["bad.lfslab", "checksum"]),
+    ] {
+        fs::write(&bad, bytes).unwrap();
+        let picture = folder.path().join("never.png").to_string_lossy().into_owned();
+        fails_saying(&lfslab(&["validate", &bad]), words);
+        fails_saying(&lfslab(&["info", &bad]), words);
+        fails_saying(&lfslab(&["render", &bad, "--cpu", "--out", &picture]), words);
+        assert!(!Path::new(&picture).exists());
+    }
+    fails_saying(&lfslab(&["info", "no-such-file.lfslab"]), &["no-such-file.lfslab"]);
+    fails_saying(&lfslab(&["info", &folder.path().to_string_lossy()]), &["cannot read"]);
+}
+
+#[test]
+fn bad_scenes_and_reflectors_are_named() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out").to_string_lossy().into_owned();
+    let path = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path.to_string_lossy().into_owned()
+    };
+    let scene = path("broken.glb", b"glTF\x02\0\0\0 nothing that follows");
+    fails_saying(&lfslab(&["demo", "--out", &out, "--scene", &scene]), &["broken.glb"]);
+    let mesh = path("broken.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    fails_saying(&lfslab(&["demo", "--out", &out, "--reflector", &mesh]), &["broken.obj"]);
+    let empty = path("empty.obj", b"# nothing\n");
+    fails_saying(&lfslab(&["demo", "--out", &out, "--reflector", &empty]), &["empty.obj"]);
+    assert_eq!(lfslab(&["demo", "--cell", "1,2,3"]).status.code(), Some(2));
+    let under_a_file = format!("{mesh}/out");
+    fails_saying(&lfslab(&["demo", "--out", &under_a_file]), &["cannot make the folder"]);
+}
+
+#[test]
+fn the_demo_leaves_all_its_files_and_nothing_else() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let output = lfslab(&["demo", "--out", &out.to_string_lossy(), "--size", "64", "--cpu"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("CPU, as asked"));
+    let mut names: Vec<_> =
+        fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    let mut expected: Vec<String> =
+        ["error-time.svg", "museum.lfslab", "parallax.png", "report.html", "report.json"].map(String::from).into();
+    for reflector in ["sphere", "teapot"] {
+        expected.extend((0..8).map(|eye| format!("{reflector}-eye-{eye}.png")));
+        expected.extend([format!("{reflector}-orbit.png"), format!("{reflector}-eye-0-reference.exr")]);
+    }
+    expected.sort();
+    assert_eq!(names, expected);
+    assert!(lfslab(&["validate", &out.join("museum.lfslab").to_string_lossy()]).status.success());
+
+    // The bar of the method: at least 6 dB over the environment map, mean of eight eyes, on both reflectors.
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
+    let results = json["results"].as_array().unwrap();
+    for reflector in ["sphere", "teapot"] {
+        let mean = |method: &str| {
+            let found = results.iter().find(|r| r["reflector"] == reflector && r["method"] == method).unwrap();
+            assert_eq!(found["eyes"].as_array().unwrap().len(), 8);
+            found["mean_psnr_db"].as_f64().unwrap()
+        };
+        let gain = mean("slabs") - mean("environment map");
+        assert!(gain >= 6.0, "{reflector}: {gain} dB");
+    }
+}

@@ -1,0 +1,33 @@
+//! The demo on a scene and a mesh that none of us made. They are too large to ship; without them the test says so.
+
+use std::path::Path;
+use std::process::Command;
+
+#[test]
+fn a_real_room_and_a_real_mesh() {
+    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
+    let scene = data.join("scenes/grey-white-room-small.glb");
+    let mesh = data.join("meshes/spot-11533v.obj");
+    if !scene.exists() || !mesh.exists() {
+        println!("NOT TESTED: {} and {} are not on this machine", scene.display(), mesh.display());
+        return;
+    }
+    let folder = tempfile::TempDir::new().unwrap();
+    let [out, scene, mesh] = [folder.path(), &scene, &mesh].map(|path| path.to_string_lossy().into_owned());
+    let arguments = ["demo", "--size", "64", "--out", &out, "--scene", &scene, "--reflector", &mesh];
+    let output = Command::new(env!("CARGO_BIN_EXE_lfslab")).args(arguments).output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{stderr}");
+    assert!(stderr.contains("27635 triangles"), "{stderr}");
+    assert!(stderr.contains("primitives are left out"), "what is not used is listed: {stderr}");
+    let report = std::fs::read(folder.path().join("report.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&report).unwrap();
+    for reflector in ["sphere", "spot-11533v"] {
+        let results = json["results"].as_array().unwrap();
+        let mean = |method: &str| {
+            let found = results.iter().find(|r| r["reflector"] == reflector && r["method"] == method).unwrap();
+            found["mean_psnr_db"].as_f64().unwrap()
+        };
+        assert!(mean("slabs") > mean("environment map"), "{reflector}");
+    }
+}
