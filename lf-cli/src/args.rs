@@ -51,7 +51,7 @@ pub(crate) struct DemoArgs {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// An OBJ mesh to reflect in, instead of the teapot
+    /// An OBJ mesh to reflect in, instead of the teapot; the sphere is always drawn
     #[arg(long, value_name = "FILE")]
     pub(crate) reflector: Option<PathBuf>,
     /// Width and height of the pictures in pixels

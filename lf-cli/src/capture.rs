@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
+use anyhow::{Result, bail};
 use lf_compress::PackedLightField;
 use lf_compress::bc1::Quality;
 use lf_format::{Metadata, TexelEncoding};
@@ -10,10 +10,11 @@ use lf_math::{Image, LightFieldGeometry, PlanePlacement};
 use lf_scene::{Capture, capture_slabs};
 
 use crate::args::{CaptureArgs, Encoding, Planes, Sampling};
-use crate::output::progress_bar;
+use crate::output::{check_writable, print, progress_bar};
 use crate::sources::Source;
 
 pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
+    check_writable(&args.out)?;
     let source = Source::load(&args.scene)?;
     let preset = args.scene.preset.sampling();
     let placement = match args.planes {
@@ -31,8 +32,7 @@ pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
     let packed = encode(&captured, encoding)?.0;
     let writer = packed.to_writer(metadata(&source)?)?;
     let bytes = writer.save(&args.out)?;
-    println!("{}: {}", args.out.display(), megabytes(bytes));
-    Ok(())
+    print(&format!("{}: {}", args.out.display(), megabytes(bytes)))
 }
 
 /// Captures the slabs with a progress bar; also how long it took.
@@ -40,6 +40,14 @@ pub(crate) fn capture(source: &Source, sampling: &Sampling) -> Result<(Capture, 
     let &Sampling { cameras, resolution, placement, grid } = sampling;
     let geometry = LightFieldGeometry::around(source.cell, placement, cameras, resolution)?;
     let images = u64::from(cameras).pow(2) * geometry.slabs().len() as u64;
+    let bytes = 4 * images * u64::from(resolution).pow(2);
+    if bytes > MAX_DECODED_BYTES {
+        bail!(
+            "{} of texels are more than the {} this program holds in memory",
+            megabytes(bytes),
+            megabytes(MAX_DECODED_BYTES)
+        );
+    }
     eprintln!(
         "capture  6 slabs of {cameras}×{cameras} cameras × {resolution}×{resolution} texels, {grid}×{grid} rays each"
     );
@@ -63,14 +71,18 @@ pub(crate) fn encode(capture: &Capture, encoding: TexelEncoding) -> Result<(Pack
     let packed = PackedLightField::encode(capture.geometry.clone(), &capture.texels, encoding, Quality::Standard)?;
     let elapsed = start.elapsed();
     let psnr = stored_psnr(capture, &packed)?;
-    eprintln!("encode   {:.1} s, {psnr:.2} dB", elapsed.as_secs_f64());
+    let quality = if psnr.is_finite() { format!("{psnr:.2} dB") } else { "lossless".to_owned() };
+    eprintln!("encode   {:.1} s, {quality}", elapsed.as_secs_f64());
     Ok((packed, elapsed, psnr))
 }
+
+/// Decoded texels may take this much memory.
+pub(crate) const MAX_DECODED_BYTES: u64 = 8 << 30;
 
 /// PSNR of all decoded texels against the captured ones.
 fn stored_psnr(capture: &Capture, packed: &PackedLightField) -> Result<f64> {
     let (mut squares, mut values) = (0.0, 0.0);
-    for (before, after) in capture.texels.iter().zip(packed.decode()?) {
+    for (before, after) in capture.texels.iter().zip(packed.decode(MAX_DECODED_BYTES)?) {
         let (before, after) = (before.contact_sheet(), after.contact_sheet());
         let all = Image::filled(before.width(), before.height(), true);
         let error = lf_math::image_error(&before, &after, &all)?;
@@ -86,7 +98,9 @@ pub(crate) fn metadata(source: &Source) -> Result<Metadata> {
     metadata.insert("generator", concat!("lfslab ", env!("CARGO_PKG_VERSION")))?;
     metadata.insert("scene", source.name())?;
     if let Some(license) = &source.license {
-        metadata.insert("license", license.as_str()).context("the scene's licence line")?;
+        // A line of a file that we did not write: kept short and without control characters, whatever it holds.
+        let line: String = license.chars().filter(|c| !c.is_control()).take(1000).collect();
+        metadata.insert("license", line)?;
     }
     Ok(metadata)
 }

@@ -4,18 +4,18 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use lf_math::{CubeMap, Image, Pinhole, TriangleMesh};
+use lf_math::{CubeMap, Image, Pinhole, PlanePlacement, TriangleMesh};
 use lf_report::{Figure, Machine, MethodResult, Report};
 use lf_scene::{Capture, capture_cube};
 
-use crate::args::DemoArgs;
+use crate::args::{DemoArgs, Sampling};
 use crate::capture::{capture, encode, megabytes, metadata};
 use crate::device::{CpuSide, GpuSide, open_gpu};
 use crate::frames::{Asked, MethodFrames, ReflectorFrames, Stage, agreement, full_orbit, orbit};
 use crate::info::load;
-use crate::output::{png, progress_bar, write, write_exr};
+use crate::output::{png, print, progress_bar, write, write_exr};
 use crate::pictures::{ERROR_GAIN, difference, middle, sheet, shrunk, strip};
-use crate::sources::{Source, reflector};
+use crate::sources::{Source, builtin, from_file};
 
 /// Texels along the edge of the environment map's faces, and rays per texel and axis.
 const CUBE_SIZE: u32 = 512;
@@ -38,14 +38,14 @@ struct Prepared {
 
 pub(crate) fn run(args: &DemoArgs) -> Result<()> {
     let start = Instant::now();
-    std::fs::create_dir_all(&args.out).with_context(|| format!("cannot make the folder {}", args.out.display()))?;
     let source = Source::load(&args.scene)?;
-    let names = [
-        "sphere",
-        args.reflector.as_deref().map_or(Some("teapot"), Path::to_str).context("--reflector: the path is not UTF-8")?,
-    ];
     // Read before the long work, so that a bad file is known at once.
-    let reflectors = names.iter().map(|name| reflector(name, &source.cell)).collect::<Result<Vec<_>>>()?;
+    let other = match &args.reflector {
+        Some(path) => from_file(path, &source.cell)?,
+        None => builtin("teapot", &source.cell)?,
+    };
+    let reflectors = [builtin("sphere", &source.cell)?, other];
+    std::fs::create_dir_all(&args.out).with_context(|| format!("cannot make the folder {}", args.out.display()))?;
 
     let file = args.out.join(format!("{}.lfslab", source.name()));
     let prepared = prepare(args, source, &file)?;
@@ -65,16 +65,13 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
     write(&args.out.join("report.json"), report.to_json()?.as_bytes())?;
     write(&args.out.join("error-time.svg"), report.error_time_svg()?.as_bytes())?;
     write(&args.out.join("report.html"), report.to_html(&figures)?.as_bytes())?;
-    println!("{}", report.to_markdown_table());
-    for headline in report.headlines() {
-        println!("{headline}");
-    }
-    println!("\n{:.0} s; open {}", start.elapsed().as_secs_f64(), args.out.join("report.html").display());
-    Ok(())
+    let open = format!("\n{:.0} s; open {}", start.elapsed().as_secs_f64(), args.out.join("report.html").display());
+    let lines = [vec![report.to_markdown_table()], report.headlines(), vec![open]].concat();
+    print(&lines.join("\n"))
 }
 
 const PARALLAX_CAPTION: &str = "The middle of the sphere from six eyes 7° apart. In the traced and in the slab pictures \
-    near columns move against the pictures on the wall behind; in the environment map they stay glued together.";
+    near things move against what is behind them; in the environment map they stay glued to it.";
 
 /// Captures, encodes, writes the file and takes the environment map.
 fn prepare(args: &DemoArgs, source: Source, file: &Path) -> Result<Prepared> {
@@ -178,11 +175,11 @@ fn report(
         results.push(MethodResult {
             reflector: name.clone(),
             method: "ray tracing".into(),
-            parameters: "reference, 1 ray a pixel".into(),
+            parameters: "reference, 1 ray a pixel; scene, hierarchy and textures in memory".into(),
             device: "CPU".into(),
             eyes: vec![],
             timing: frames.reference_timing.clone(),
-            bytes_on_device: size_of_val(prepared.source.tracer.scene().triangles()) as u64,
+            bytes_on_device: prepared.source.tracer.memory_bytes() as u64,
             bytes_on_disk: None,
             preparation_s: prepared.source.build_time.as_secs_f64(),
         });
@@ -221,9 +218,10 @@ fn method_result(
         Asked::Slabs => (
             "slabs",
             format!(
-                "6 × {0}×{0} cameras × {1}×{1} texels, {2}",
+                "6 × {0}×{0} cameras × {1}×{1} texels, planes {2}, {3}",
                 sampling.cameras,
                 sampling.resolution,
+                placement(&sampling),
                 side.map_or("decoded RGBA8", |side| side.storage.as_str())
             ),
             side.map_or(texel_bytes as u64, |side| side.slab_bytes),
@@ -251,12 +249,20 @@ fn method_result(
     }
 }
 
+/// Where the camera planes stand, for people.
+fn placement(sampling: &Sampling) -> &'static str {
+    match sampling.placement {
+        PlanePlacement::CellFaces => "on the cell's faces",
+        PlanePlacement::CellCenter => "through the cell's centre",
+    }
+}
+
 /// How far the GPU's slab pictures are from the CPU's, if both were drawn.
 fn parity_note(name: &str, frames: &ReflectorFrames) -> Option<String> {
     let on = |gpu: bool| frames.methods.iter().find(|method| method.asked == Asked::Slabs && method.on_gpu == gpu);
-    let (share, worst) = agreement(&on(true)?.pictures, &on(false)?.pictures);
+    let (share, worst) = agreement(&frames.references, &on(true)?.pictures, &on(false)?.pictures);
     Some(format!(
-        "{name}: the slab pictures of GPU and CPU agree within 2/255 at {:.3} % of the pixels (largest difference {worst}).",
+        "{name}: the slab pictures of GPU and CPU agree within 2/255 at {:.3} % of the reflector's pixels (largest difference {worst}).",
         100.0 * share
     ))
 }
@@ -271,11 +277,16 @@ fn facts(args: &DemoArgs, prepared: &Prepared) -> Vec<(String, String)> {
     [
         ("Triangles", prepared.source.tracer.scene().triangles().len().to_string()),
         ("Cell", format!("{:.3} m around ({:.3}, {:.3}, {:.3})", edges.x, center.x, center.y, center.z)),
-        ("Preset", args.scene.preset.name().to_owned()),
+        ("Preset", format!("{}, camera planes {}", args.scene.preset.name(), placement(&args.scene.preset.sampling()))),
         ("Focal depths +X −X +Y −Y +Z −Z", format!("{} m", depths.join(", "))),
         (
             "Capture",
-            format!("{:.1} million rays in {:.1} s", capture.rays as f64 / 1e6, prepared.capture_time.as_secs_f64()),
+            format!(
+                "{:.1} million rays in {:.1} s, {2}×{2} a texel",
+                capture.rays as f64 / 1e6,
+                prepared.capture_time.as_secs_f64(),
+                args.scene.preset.sampling().grid
+            ),
         ),
         (
             "Encoding",
@@ -288,8 +299,13 @@ fn facts(args: &DemoArgs, prepared: &Prepared) -> Vec<(String, String)> {
     .into()
 }
 
-/// The command that was typed, for the report.
+/// The command that was typed, for the report; words that a shell would change are quoted.
 fn command_line() -> String {
-    let words = std::env::args().skip(1).map(|word| if word.contains(' ') { format!("'{word}'") } else { word });
+    let quoted = |word: std::ffi::OsString| {
+        let word = word.to_string_lossy().into_owned();
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
+        if !word.is_empty() && word.chars().all(plain) { word } else { format!("'{}'", word.replace('\'', "'\\''")) }
+    };
+    let words = std::env::args_os().skip(1).map(quoted);
     std::iter::once("lfslab".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }

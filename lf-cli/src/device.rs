@@ -6,6 +6,8 @@ use lf_gpu::{Gpu, MirrorMesh, ReflectionPass, SlabTexture, Target};
 use lf_ibr::{CubeField, Environment, GBuffer, SlabField, reflect_frame};
 use lf_math::{CubeMap, Image, Pinhole, TriangleMesh};
 
+use crate::capture::MAX_DECODED_BYTES;
+
 /// Opens a GPU, or says why the CPU draws.
 pub(crate) fn open_gpu(cpu_only: bool) -> Option<Gpu> {
     if cpu_only {
@@ -18,7 +20,7 @@ pub(crate) fn open_gpu(cpu_only: bool) -> Option<Gpu> {
             Some(gpu)
         }
         Err(error) => {
-            eprintln!("device   CPU: {error}");
+            eprintln!("device   CPU: {:#}", anyhow::Error::from(error));
             None
         }
     }
@@ -43,7 +45,7 @@ pub(crate) struct GpuMethod<'a> {
 
 impl Method for GpuMethod<'_> {
     fn draw(&mut self) -> Result<()> {
-        self.pass.draw(self.gpu, self.target, self.mesh, self.camera);
+        self.pass.draw(self.gpu, self.target, self.mesh, self.camera)?;
         Ok(self.gpu.wait()?)
     }
 
@@ -91,7 +93,7 @@ pub(crate) struct GpuSide {
 impl GpuSide {
     pub(crate) fn new(gpu: Gpu, field: &PackedLightField, cube: &CubeMap, size: u32) -> Result<Self> {
         let texture = SlabTexture::new(&gpu, field)?;
-        let (slabs, cube) = (ReflectionPass::slabs(&gpu, field, &texture)?, ReflectionPass::environment(&gpu, cube)?);
+        let (slabs, cube) = (ReflectionPass::slabs(&gpu, &texture)?, ReflectionPass::environment(&gpu, cube)?);
         let target = Target::new(&gpu, size, size)?;
         let (storage, slab_bytes) = (texture.storage().to_string(), texture.bytes());
         Ok(Self { gpu, target, slabs, cube, storage, slab_bytes })
@@ -106,6 +108,9 @@ pub(crate) struct CpuSide {
 
 impl CpuSide {
     pub(crate) fn new(field: &PackedLightField, cube: &CubeMap) -> Result<Self> {
-        Ok(Self { slabs: SlabField::new(field.geometry().clone(), field.decode()?)?, cube: CubeField::new(cube) })
+        Ok(Self {
+            slabs: SlabField::new(field.geometry().clone(), field.decode(MAX_DECODED_BYTES)?)?,
+            cube: CubeField::new(cube),
+        })
     }
 }

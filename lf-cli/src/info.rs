@@ -10,6 +10,7 @@ use lf_format::{Container, Limits};
 use lf_math::{SampledAxis, Slab};
 
 use crate::capture::megabytes;
+use crate::output::print;
 
 /// The bytes of a file, refused before reading if larger than the limits allow.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
@@ -36,8 +37,7 @@ pub(crate) fn load(path: &Path) -> Result<PackedLightField> {
 pub(crate) fn validate(path: &Path) -> Result<()> {
     let field = load(path)?;
     let tiles: usize = (0..field.tilings().len()).map(|slab| field.tiles(slab).len()).sum();
-    println!("{}: valid ({} slabs, {tiles} tiles)", path.display(), field.tilings().len());
-    Ok(())
+    print(&format!("{}: valid ({} slabs, {tiles} tiles)", path.display(), field.tilings().len()))
 }
 
 /// Prints the structure of a file.
@@ -45,26 +45,28 @@ pub(crate) fn info(path: &Path) -> Result<()> {
     let bytes = read_file(path)?;
     let container = Container::parse(&bytes, &Limits::default()).with_context(|| path.display().to_string())?;
     let (major, minor) = container.version();
-    println!("{}: lfslab {major}.{minor}, {}", path.display(), megabytes(bytes.len() as u64));
-    for (key, value) in container.metadata().iter() {
-        println!("{key}: {value}");
-    }
+    let mut lines = vec![format!("{}: lfslab {major}.{minor}, {}", path.display(), megabytes(bytes.len() as u64))];
+    // Escaped, so that a file cannot pose as this program or steer the terminal.
+    lines.extend(container.metadata().iter().map(|(key, value)| format!("{key}: {}", value.escape_debug())));
     let cell = container.geometry().cell();
-    println!("cell: centre {} m, edges {} m", cell.center(), 2.0 * cell.half_extent());
-    for (number, (slab, tiling)) in container.geometry().slabs().iter().zip(container.tilings()).enumerate() {
-        let chunks =
-            || container.chunks().filter(|chunk| chunk.slab as usize == number && chunk.tag == lf_format::Tag::TILE);
-        let stored: u64 = chunks().map(|chunk| chunk.stored_len).sum();
-        let raw: u64 = chunks().map(|chunk| chunk.raw_len).sum();
-        println!("slab {number}: {}", describe(slab));
-        let ([gs, gt], tiles) = (tiling.cameras_per_tile(), tiling.tile_count());
-        let share = 100.0 * stored as f64 / raw as f64;
-        println!(
-            "  {:?}, {tiles} tiles of {gs}×{gt} cameras, {stored} bytes packed of {raw} ({share:.1} %)",
-            tiling.encoding()
-        );
+    lines.push(format!("cell: centre {} m, edges {} m", cell.center(), 2.0 * cell.half_extent()));
+    for (number, slab) in container.geometry().slabs().iter().enumerate() {
+        lines.push(format!("slab {number}: {}", describe(slab)));
+        lines.push(storage(&container, number));
     }
-    Ok(())
+    print(&lines.join("\n"))
+}
+
+/// How a slab is stored.
+fn storage(container: &Container<'_>, slab: usize) -> String {
+    let tiling = container.tilings()[slab];
+    let ([per_s, per_t], count) = (tiling.cameras_per_tile(), tiling.tile_count());
+    let tiles = (0..count).filter_map(|tile| container.tile(slab, tile));
+    let (stored, raw) =
+        tiles.fold((0, 0), |(stored, raw), tile| (stored + tile.bytes.len() as u64, raw + tile.raw_len));
+    let share = 100.0 * stored as f64 / raw as f64;
+    let encoding = format!("{:?}", tiling.encoding()).to_uppercase();
+    format!("  {encoding}, {count} tiles of {per_s}×{per_t} cameras, {stored} of {raw} bytes ({share:.1} %)")
 }
 
 fn describe(slab: &Slab) -> String {

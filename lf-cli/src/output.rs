@@ -1,15 +1,36 @@
-//! Files and progress.
+//! Files, lines and progress.
 
-use std::io::Cursor;
+use std::io::{Cursor, ErrorKind, Write, stdout};
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use glam::Vec3;
 use image::ImageEncoder;
 use image::codecs::png::PngEncoder;
 use indicatif::{ProgressBar, ProgressStyle};
 use lf_format::write_atomic;
 use lf_math::Image;
+
+/// Prints lines to standard output. A reader that has gone away is no error.
+pub(crate) fn print(lines: &str) -> Result<()> {
+    let mut out = stdout().lock();
+    match writeln!(out, "{lines}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("cannot write to standard output"),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses an output path before long work: its folder must exist and it must not be a folder.
+pub(crate) fn check_writable(path: &Path) -> Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    if !folder.is_dir() {
+        bail!("cannot write {}: the folder {} does not exist", path.display(), folder.display());
+    }
+    if path.is_dir() {
+        bail!("cannot write {}: it is a folder", path.display());
+    }
+    Ok(())
+}
 
 /// Writes a file whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {

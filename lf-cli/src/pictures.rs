@@ -52,7 +52,8 @@ pub(crate) fn difference(a: &Image<[u8; 4]>, b: &Image<[u8; 4]>) -> Image<[u8; 4
     picture
 }
 
-/// The picture at `1 / factor` of its size, each pixel the mean of a square. `factor` must divide both sizes.
+/// The picture at `1 / factor` of its size, each pixel the mean of a square of encoded values; columns and rows that fill
+/// no square are left out.
 pub(crate) fn shrunk(picture: &Image<[u8; 4]>, factor: u32) -> Image<[u8; 4]> {
     let (width, height) = (picture.width() / factor, picture.height() / factor);
     let mut small = Image::filled(width, height, [0; 4]);

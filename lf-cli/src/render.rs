@@ -1,5 +1,7 @@
 //! `lfslab render`: a mirror in a stored light field.
 
+use std::path::Path;
+
 use anyhow::Result;
 use glam::Vec3;
 use lf_gpu::{MirrorMesh, ReflectionPass, SlabTexture, Target};
@@ -7,37 +9,41 @@ use lf_ibr::SlabField;
 use lf_math::{Image, Pinhole};
 
 use crate::args::RenderArgs;
+use crate::capture::MAX_DECODED_BYTES;
 use crate::device::{CpuMethod, GpuMethod, Method, open_gpu};
 use crate::frames::FOV_Y;
 use crate::info::load;
-use crate::output::{png, write};
+use crate::output::{check_writable, png, print, write};
 use crate::pictures::over;
-use crate::sources::reflector;
+use crate::sources::{builtin, from_file};
 
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
+    check_writable(&args.out)?;
     let field = load(&args.file)?;
     let cell = *field.geometry().cell();
-    let (_, mesh) = reflector(&args.reflector, &cell)?;
+    let (_, mesh) = match args.reflector.as_str() {
+        name @ ("sphere" | "teapot") => builtin(name, &cell)?,
+        file => from_file(Path::new(file), &cell)?,
+    };
     let eye = args.eye.0 * 2.0 * cell.half_extent().min_element();
     let camera = Pinhole::look_at(eye, Vec3::ZERO, FOV_Y, args.size, args.size)?;
     let picture = match open_gpu(args.cpu) {
         Some(gpu) => {
             let texture = SlabTexture::new(&gpu, &field)?;
             eprintln!("slabs    {}", texture.storage());
-            let pass = ReflectionPass::slabs(&gpu, &field, &texture)?;
+            let pass = ReflectionPass::slabs(&gpu, &texture)?;
             let target = Target::new(&gpu, args.size, args.size)?;
             let mesh = MirrorMesh::new(&gpu, &mesh)?;
             finish(GpuMethod { gpu: &gpu, pass: &pass, target: &target, mesh: &mesh, camera: &camera })?
         }
         None => {
-            let environment = SlabField::new(field.geometry().clone(), field.decode()?)?;
+            let environment = SlabField::new(field.geometry().clone(), field.decode(MAX_DECODED_BYTES)?)?;
             finish(CpuMethod::new(&environment, &mesh, &camera))?
         }
     };
     let grey = Image::filled(args.size, args.size, [40, 40, 44, 255]);
     write(&args.out, &png(&over(&picture, &grey))?)?;
-    println!("{}", args.out.display());
-    Ok(())
+    print(&args.out.display().to_string())
 }
 
 fn finish(mut method: impl Method) -> Result<Image<[u8; 4]>> {

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use glam::Vec3;
 use lf_math::{Cell, TriangleMesh};
-use lf_scene::{Scene, Tracer, find_free_space, import_gltf, import_obj, museum, reflectors};
+use lf_scene::{Scene, Tracer, find_free_space, import_gltf, import_obj, is_free, museum, reflectors};
 
 use crate::args::SceneArgs;
 
@@ -39,9 +39,8 @@ impl Source {
             None if args.scene.is_none() => museum::cell(),
             None => free_cell(&tracer, camera)?,
         };
-        let room = lf_scene::free_radius(&tracer, cell.center().as_vec3());
-        if room < cell.half_extent().x {
-            eprintln!("warning: a surface stands {room:.3} m from the cell's centre, inside the cell");
+        if !is_free(&tracer, &cell) {
+            eprintln!("warning: something stands inside the cell; reflections will not show it");
         }
         let (at, size) = (cell.center(), 2.0 * cell.half_extent().x);
         let (name, count) = (tracer.scene().name(), tracer.scene().triangles().len());
@@ -74,17 +73,24 @@ fn free_cell(tracer: &Tracer, camera: Option<(Vec3, Vec3)>) -> Result<Cell> {
     Ok(Cell::cube(space.center.as_dvec3(), space.radius / (1.1 * EYE_DISTANCE))?)
 }
 
-/// `sphere`, `teapot` or the name of an OBJ file's stem, with the mesh fitted into the cell, in cell space.
-pub(crate) fn reflector(name: &str, cell: &Cell) -> Result<(String, TriangleMesh)> {
-    let (label, mesh) = match name {
-        "sphere" => (name.to_owned(), reflectors::sphere(5)),
-        "teapot" => (name.to_owned(), reflectors::teapot(10)),
-        file => {
-            let path = Path::new(file);
-            let label = path.file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
-            (label, import_obj(path)?)
-        }
-    };
+/// A reflector that this program carries.
+pub(crate) fn builtin(name: &str, cell: &Cell) -> Result<(String, TriangleMesh)> {
+    let mesh = if name == "sphere" { reflectors::sphere(5) } else { reflectors::teapot(10) };
+    fitted(name.to_owned(), &mesh, cell)
+}
+
+/// A reflector from an OBJ file, labelled by the file's stem.
+pub(crate) fn from_file(path: &Path, cell: &Cell) -> Result<(String, TriangleMesh)> {
+    let mesh = import_obj(path)?;
+    let stem = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+    // Not to be mixed up with the one that is always drawn.
+    let label = if stem == "sphere" { "sphere mesh".to_owned() } else { stem.into_owned() };
+    fitted(label, &mesh, cell).with_context(|| path.display().to_string())
+}
+
+/// A mesh in cell space that stays inside the cell.
+fn fitted(label: String, mesh: &TriangleMesh, cell: &Cell) -> Result<(String, TriangleMesh)> {
     let radius = REFLECTOR_RADIUS * 2.0 * cell.half_extent().min_element();
-    Ok((label, mesh.fitted(Vec3::ZERO, radius)))
+    let mesh = mesh.fitted(Vec3::ZERO, radius).context("the mesh does not fit into the cell")?;
+    Ok((label, mesh))
 }

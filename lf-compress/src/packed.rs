@@ -1,7 +1,7 @@
 //! A whole light field as encoded tiles.
 
 use lf_format::{Container, FormatError, Metadata, Packing, SlabTiling, TexelEncoding, Writer};
-use lf_math::{GeometryError, Image, LightFieldGeometry, SlabTexels};
+use lf_math::{GeometryError, Image, LightFieldGeometry, Slab, SlabTexels};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -26,7 +26,7 @@ pub enum PackError {
     #[error(transparent)]
     Volume(#[from] VolumeTooLarge),
     /// A tile's bytes do not hold what the file says they do.
-    #[error("tile {tile} of slab {slab} {what}; the file is damaged or was written by a faulty program")]
+    #[error("tile {tile} of slab {slab} {what} (clause 7.5 of the file format)")]
     Tile {
         /// Position of the slab in the file.
         slab: usize,
@@ -34,6 +34,17 @@ pub enum PackError {
         tile: u32,
         /// What is wrong, as the rest of a sentence.
         what: String,
+    },
+    /// This crate has no codec for an encoding.
+    #[error("this version cannot encode or decode {0:?} texels")]
+    Encoding(TexelEncoding),
+    /// The decoded texels would need more memory than allowed.
+    #[error("the decoded light field takes {bytes} bytes, more than the {limit} allowed")]
+    TooLarge {
+        /// Bytes of the decoded texels.
+        bytes: u64,
+        /// The limit given.
+        limit: u64,
     },
     /// zstd failed to pack a tile.
     #[error("zstd could not pack a tile: {0}")]
@@ -72,17 +83,18 @@ impl PackedLightField {
         if slabs.len() != texels.len() {
             return Err(PackError::SlabCount { slabs: slabs.len(), texels: texels.len() });
         }
+        for (slab, texels) in slabs.iter().zip(texels) {
+            texels.check(slab)?;
+        }
         let tiling = |slab| SlabTiling::new(slab, encoding, cameras_per_slice(slab));
         let tilings = slabs.iter().map(tiling).collect::<Result<Vec<_>, _>>()?;
+        let layout = layout(&geometry, &tilings)?;
         let encode_slab = |(tiling, texels): (&SlabTiling, &SlabTexels)| {
             let tile = |tile| encode_picture(&tile_picture(texels, tiling, tile), tiling.encoding(), quality);
             (0..tiling.tile_count()).into_par_iter().map(tile).collect::<Result<Vec<_>, _>>()
         };
-        for (slab, texels) in slabs.iter().zip(texels) {
-            texels.check(slab)?;
-        }
         let tiles = tilings.iter().zip(texels).map(encode_slab).collect::<Result<_, _>>()?;
-        Self::assemble(geometry, tilings, tiles)
+        Ok(Self { geometry, tilings, layout, tiles })
     }
 
     /// Unpacks all tiles of a container, on all threads.
@@ -90,6 +102,8 @@ impl PackedLightField {
     /// # Errors
     /// A tile that is missing, or whose bytes do not unpack to the length that the geometry asks for.
     pub fn read(container: &Container<'_>) -> Result<Self, PackError> {
+        let (geometry, tilings) = (container.geometry().clone(), container.tilings().to_vec());
+        let layout = layout(&geometry, &tilings)?;
         let read_slab = |slab: usize| {
             let tiling = container.tilings()[slab];
             (0..tiling.tile_count())
@@ -98,19 +112,10 @@ impl PackedLightField {
                 .collect::<Result<Vec<_>, _>>()
         };
         let tiles = (0..container.tilings().len()).map(read_slab).collect::<Result<_, _>>()?;
-        Self::assemble(container.geometry().clone(), container.tilings().to_vec(), tiles)
-    }
-
-    fn assemble(
-        geometry: LightFieldGeometry,
-        tilings: Vec<SlabTiling>,
-        tiles: Vec<Vec<Vec<u8>>>,
-    ) -> Result<Self, PackError> {
-        let layout = VolumeLayout::with_cameras_per_slice(&geometry, |i| tilings[i].cameras_per_tile())?;
         Ok(Self { geometry, tilings, layout, tiles })
     }
 
-    /// Packs the tiles by zstd into a container, on all threads.
+    /// Packs the tiles into a container, by zstd where that makes them smaller, on all threads.
     ///
     /// # Errors
     /// See [`Writer`].
@@ -118,36 +123,49 @@ impl PackedLightField {
         let mut writer = Writer::new(self.geometry.clone(), self.tilings.clone(), metadata)?;
         for (slab, tiles) in self.tiles.iter().enumerate() {
             let packed = tiles.par_iter().map(|raw| zstd_tile::pack(raw)).collect::<Result<Vec<_>, _>>();
-            for (tile, bytes) in (0..).zip(packed.map_err(PackError::Zstd)?) {
-                writer.add_tile(slab, tile, Packing::Zstd, bytes)?;
+            for (tile, (raw, packed)) in (0..).zip(tiles.iter().zip(packed.map_err(PackError::Zstd)?)) {
+                if packed.len() < raw.len() {
+                    writer.add_tile(slab, tile, Packing::Zstd, packed)?;
+                } else {
+                    writer.add_tile(slab, tile, Packing::None, raw.clone())?;
+                }
             }
         }
         Ok(writer)
     }
 
-    /// Decodes all texels, on all threads.
+    /// Decodes all texels, on all threads, into at most `max_bytes` (4 a texel), beside which one row of tiles is held.
     ///
     /// # Errors
-    /// None for a value made by [`Self::encode`] or [`Self::read`]; the block codec checks its lengths again.
-    pub fn decode(&self) -> Result<Vec<SlabTexels>, PackError> {
+    /// If more would be needed.
+    pub fn decode(&self, max_bytes: u64) -> Result<Vec<SlabTexels>, PackError> {
+        let texels = |slab: &Slab| {
+            let sizes = [slab.cameras(), slab.resolution()].concat();
+            sizes.into_iter().fold(4, |product: u64, n| product.saturating_mul(u64::from(n)))
+        };
+        let bytes = self.geometry.slabs().iter().map(texels).fold(0, u64::saturating_add);
+        if bytes > max_bytes {
+            return Err(PackError::TooLarge { bytes, limit: max_bytes });
+        }
         (0..self.tilings.len()).map(|slab| self.decode_slab(slab)).collect()
     }
 
     fn decode_slab(&self, slab: usize) -> Result<SlabTexels, PackError> {
-        let geometry = &self.geometry.slabs()[slab];
-        let tiling = &self.tilings[slab];
-        let pictures =
-            self.tiles[slab].par_iter().map(|raw| decode_picture(raw, tiling)).collect::<Result<Vec<_>, _>>()?;
-        let [cameras_s, cameras_t] = geometry.cameras();
-        let [width, height] = geometry.resolution();
-        let mut texels = Vec::with_capacity(cameras_s as usize * cameras_t as usize * width as usize * height as usize);
-        for t in 0..cameras_t {
-            for s in 0..cameras_s {
-                let (tile, [x, y]) = place_of(tiling, [s, t]);
-                let picture = &pictures[tile as usize];
-                let rows =
-                    picture.texels().chunks_exact(picture.width() as usize).skip(y as usize).take(height as usize);
-                texels.extend(rows.flat_map(|row| &row[x as usize..][..width as usize]));
+        let (geometry, tiling) = (&self.geometry.slabs()[slab], &self.tilings[slab]);
+        let ([cameras_s, cameras_t], [width, height]) = (geometry.cameras(), geometry.resolution());
+        let mut texels = Vec::new();
+        let rows_of_tiles = self.tiles[slab].chunks(tiling.tiles()[0] as usize);
+        for (row, tiles) in (0..).zip(rows_of_tiles) {
+            let decode = |raw: &Vec<u8>| decode_picture(raw, tiling);
+            let pictures = tiles.par_iter().map(decode).collect::<Result<Vec<_>, _>>()?;
+            let [per_s, per_t] = tiling.cameras_per_tile();
+            for t in row * per_t..cameras_t.min((row + 1).saturating_mul(per_t)) {
+                for s in 0..cameras_s {
+                    let picture = &pictures[(s / per_s) as usize];
+                    let [x, y] = corner(tiling, [s, t]).map(|n| n as usize);
+                    let rows = picture.texels().chunks_exact(picture.width() as usize).skip(y).take(height as usize);
+                    texels.extend(rows.flat_map(|row| &row[x..][..width as usize]));
+                }
             }
         }
         Ok(SlabTexels::new(geometry, texels)?)
@@ -178,15 +196,16 @@ impl PackedLightField {
     }
 }
 
-/// The tile that holds a camera's image, and the image's top left texel there.
-fn place_of(tiling: &SlabTiling, camera: [u32; 2]) -> (u32, [u32; 2]) {
-    let [per_s, per_t] = tiling.cameras_per_tile();
-    let [pitch_u, pitch_v] = tiling.image_pitch();
-    let tile = camera[1] / per_t * tiling.tiles()[0] + camera[0] / per_s;
-    (tile, [camera[0] % per_s * pitch_u, camera[1] % per_t * pitch_v])
+fn layout(geometry: &LightFieldGeometry, tilings: &[SlabTiling]) -> Result<VolumeLayout, VolumeTooLarge> {
+    VolumeLayout::with_cameras_per_slice(geometry, |i| tilings[i].cameras_per_tile())
 }
 
-/// The picture of a tile: its cameras' images, each padded to whole blocks by repeating its last column and row.
+/// Top left texel of a camera's image in its tile's picture (clause 7.6 of the file format).
+fn corner(tiling: &SlabTiling, camera: [u32; 2]) -> [u32; 2] {
+    [0, 1].map(|i| camera[i] % tiling.cameras_per_tile()[i] * tiling.image_pitch()[i])
+}
+
+/// The picture of a tile: its cameras' images, opaque, each padded to whole blocks by repeating its last column and row.
 fn tile_picture(texels: &SlabTexels, tiling: &SlabTiling, tile: u32) -> Image<[u8; 4]> {
     let [per_s, per_t] = tiling.cameras_per_tile();
     let [width, height] = tiling.tile_size();
@@ -194,7 +213,7 @@ fn tile_picture(texels: &SlabTexels, tiling: &SlabTiling, tile: u32) -> Image<[u
     let mut picture = Image::filled(width, height, [0; 4]);
     for t in first_t..texels.cameras()[1].min(first_t + per_t) {
         for s in first_s..texels.cameras()[0].min(first_s + per_s) {
-            let (_, [x, y]) = place_of(tiling, [s, t]);
+            let [x, y] = corner(tiling, [s, t]);
             let padded = pad(texels.image([s, t]), texels.resolution(), tiling.image_pitch());
             picture.blit_rows(&padded, tiling.image_pitch()[0], x, y);
         }
@@ -204,14 +223,15 @@ fn tile_picture(texels: &SlabTexels, tiling: &SlabTiling, tile: u32) -> Image<[u
 
 fn pad(image: &[[u8; 4]], [width, height]: [u32; 2], [pitch_u, pitch_v]: [u32; 2]) -> Vec<[u8; 4]> {
     let row = |v: u32| &image[v.min(height - 1) as usize * width as usize..][..width as usize];
-    (0..pitch_v).flat_map(|v| (0..pitch_u).map(move |u| row(v)[u.min(width - 1) as usize])).collect()
+    let opaque = |[r, g, b, _]: [u8; 4]| [r, g, b, 255];
+    (0..pitch_v).flat_map(|v| (0..pitch_u).map(move |u| opaque(row(v)[u.min(width - 1) as usize]))).collect()
 }
 
 fn encode_picture(picture: &Image<[u8; 4]>, encoding: TexelEncoding, quality: Quality) -> Result<Vec<u8>, PackError> {
     match encoding {
         TexelEncoding::Bc1 => Ok(bc1::encode_image(picture.width(), picture.height(), picture.texels(), quality)?),
         TexelEncoding::Rgba8 => Ok(bytemuck::cast_slice(picture.texels()).to_vec()),
-        _ => Err(PackError::Tile { slab: 0, tile: 0, what: format!("has no encoder for {encoding:?}") }),
+        other => Err(PackError::Encoding(other)),
     }
 }
 
@@ -219,8 +239,9 @@ fn decode_picture(raw: &[u8], tiling: &SlabTiling) -> Result<Image<[u8; 4]>, Pac
     let [width, height] = tiling.tile_size();
     let texels = match tiling.encoding() {
         TexelEncoding::Bc1 => bc1::decode_image(width, height, raw)?,
-        // Read as opaque, like BC1: the fourth byte is padding.
-        _ => raw.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect(),
+        // The fourth byte is to be ignored.
+        TexelEncoding::Rgba8 => raw.chunks_exact(4).map(|t| [t[0], t[1], t[2], 255]).collect(),
+        other => return Err(PackError::Encoding(other)),
     };
     Ok(Image::new(width, height, texels)?)
 }

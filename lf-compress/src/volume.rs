@@ -134,11 +134,12 @@ impl VolumeLayout {
         let slice = texel[2] - part.first_slice;
         let group = [slice % part.groups[0], slice / part.groups[0]];
         let image = [0, 1].map(|i| texel[i] / part.pitch[i]);
+        if image[0] >= part.cameras_per_slice[0] || image[1] >= part.cameras_per_slice[1] {
+            return None;
+        }
         let camera = [0, 1].map(|i| group[i] * part.cameras_per_slice[i] + image[i]);
         let texel = [0, 1].map(|i| texel[i] % part.pitch[i]);
-        let found = Sample { slab, camera, texel };
-        let in_slice = |i: usize| image[i] < part.cameras_per_slice[i];
-        (in_slice(0) && in_slice(1) && self.texel(&found).is_some()).then_some(found)
+        Some(Sample { slab, camera, texel }).filter(|found| self.texel(found).is_some())
     }
 }
 

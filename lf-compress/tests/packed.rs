@@ -18,8 +18,8 @@ fn field() -> (LightFieldGeometry, Vec<SlabTexels>) {
         let ([cameras_s, cameras_t], [width, height]) = (slab.cameras(), slab.resolution());
         let count = cameras_s * cameras_t * width * height;
         let texel = |i: u32| {
-            let (x, camera) = (i % width, i / (width * height));
-            [(x * 255 / width) as u8, (camera * 9 % 256) as u8, 90, 255]
+            let (x, y, camera) = (i % width, i / width % height, i / (width * height));
+            [(x * 255 / width) as u8, (camera * 9 % 256) as u8, (y * 200 / height) as u8, 255]
         };
         SlabTexels::new(slab, (0..count).map(texel).collect()).expect("texels")
     });
@@ -34,22 +34,22 @@ fn rgba_is_lossless_through_a_file() {
     let bytes = packed.to_writer(Metadata::new()).unwrap().to_bytes().unwrap();
     let read = PackedLightField::read(&Container::parse(&bytes, &Limits::default()).unwrap()).unwrap();
     assert_eq!(read.geometry(), &geometry);
-    assert_eq!(read.decode().unwrap(), texels);
+    assert_eq!(read.decode(1 << 30).unwrap(), texels);
 }
 
 #[test]
 fn bc1_is_close_and_comes_back_bit_for_bit() {
     let (geometry, texels) = field();
     let packed = PackedLightField::encode(geometry, &texels, TexelEncoding::Bc1, Quality::Standard).unwrap();
-    let decoded = packed.decode().unwrap();
+    let decoded = packed.decode(1 << 30).unwrap();
     for (before, after) in texels.iter().zip(&decoded) {
         for (a, b) in before.texels().iter().zip(after.texels()) {
-            assert!((0..4).all(|c| a[c].abs_diff(b[c]) <= 8), "{a:?} {b:?}");
+            assert!((0..4).all(|c| a[c].abs_diff(b[c]) <= 40), "{a:?} {b:?}");
         }
     }
     let bytes = packed.to_writer(Metadata::new()).unwrap().to_bytes().unwrap();
     let read = PackedLightField::read(&Container::parse(&bytes, &Limits::default()).unwrap()).unwrap();
-    assert_eq!(read.decode().unwrap(), decoded);
+    assert_eq!(read.decode(1 << 30).unwrap(), decoded);
     assert_eq!(read.layout(), packed.layout());
 }
 
@@ -73,4 +73,82 @@ fn the_file_does_not_depend_on_the_threads() {
         })
     };
     assert_eq!(bytes(1), bytes(3));
+}
+
+#[test]
+fn stored_bytes_lie_where_the_file_format_says() {
+    let (geometry, texels) = field();
+    let packed = PackedLightField::encode(geometry, &texels, TexelEncoding::Rgba8, Quality::Fast).unwrap();
+    for (number, slab) in packed.geometry().slabs().iter().enumerate() {
+        let ([cameras_s, cameras_t], [width, height]) = (slab.cameras(), slab.resolution());
+        let [gs, gt] = packed.tilings()[number].cameras_per_tile();
+        // Clause 7: images padded to whole blocks side by side, tiles with s fastest, four bytes a texel.
+        let (pitch_u, pitch_v) = (width.div_ceil(4) * 4, height.div_ceil(4) * 4);
+        let row_bytes = gs * pitch_u * 4;
+        let address = |[s, t]: [u32; 2], [u, v]: [u32; 2]| {
+            let tile = (t / gt) * cameras_s.div_ceil(gs) + s / gs;
+            ((tile as usize), (((t % gt) * pitch_v + v) * row_bytes + ((s % gs) * pitch_u + u) * 4) as usize)
+        };
+        let read = |(tile, byte): (usize, usize)| packed.tiles(number)[tile][byte..byte + 4].to_vec();
+        for (t, s) in (0..cameras_t).flat_map(|t| (0..cameras_s).map(move |s| (t, s))) {
+            for (v, u) in (0..pitch_v).flat_map(|v| (0..pitch_u).map(move |u| (v, u))) {
+                let expected = texels[number].texel([s, t], [u.min(width - 1), v.min(height - 1)]);
+                assert_eq!(read(address([s, t], [u, v])), expected, "slab {number}, camera {s} {t}, texel {u} {v}");
+                if u < width && v < height {
+                    let sample = lf_compress::volume::Sample { slab: number, camera: [s, t], texel: [u, v] };
+                    let [x, y, z] = packed.layout().texel(&sample).unwrap();
+                    let slice = z - packed.layout().slabs()[number].first_slice();
+                    assert_eq!(address([s, t], [u, v]), (slice as usize, (y * row_bytes + 4 * x) as usize));
+                }
+            }
+        }
+        // Cameras that a tile has room for but the grid has not are zero.
+        let absent = cameras_s.next_multiple_of(gs);
+        for s in cameras_s..absent {
+            assert_eq!(read(address([s, 0], [0, 0])), [0; 4]);
+        }
+    }
+}
+
+#[test]
+fn alpha_is_stored_as_opaque_and_large_fields_are_refused() {
+    let (geometry, texels) = field();
+    let clear: Vec<_> = geometry
+        .slabs()
+        .iter()
+        .zip(&texels)
+        .map(|(slab, texels)| {
+            let texels = texels.texels().iter().map(|&[r, g, b, _]| [r, g, b, 7]).collect();
+            SlabTexels::new(slab, texels).unwrap()
+        })
+        .collect();
+    let packed = PackedLightField::encode(geometry, &clear, TexelEncoding::Rgba8, Quality::Fast).unwrap();
+    assert_eq!(packed.decode(1 << 30).unwrap(), texels);
+    let bytes: usize = texels.iter().map(|slab| 4 * slab.texels().len()).sum();
+    assert!(packed.decode(bytes as u64).is_ok());
+    assert!(matches!(packed.decode(bytes as u64 - 1), Err(lf_compress::PackError::TooLarge { .. })));
+}
+
+#[test]
+fn tiles_that_do_not_shrink_are_stored_plainly() {
+    let (geometry, texels) = field();
+    let noise: Vec<_> = geometry
+        .slabs()
+        .iter()
+        .zip(&texels)
+        .map(|(slab, texels)| {
+            let hash = |i: usize| {
+                (i as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29).wrapping_mul(0xBF58_476D_1CE4_E5B9)
+            };
+            let all = (0..texels.texels().len()).map(|i| hash(i).to_be_bytes()).map(|[r, g, b, ..]| [r, g, b, 255]);
+            SlabTexels::new(slab, all.collect()).unwrap()
+        })
+        .collect();
+    let packed = PackedLightField::encode(geometry, &noise, TexelEncoding::Bc1, Quality::Fast).unwrap();
+    let bytes = packed.to_writer(Metadata::new()).unwrap().to_bytes().unwrap();
+    let container = Container::parse(&bytes, &Limits::default()).unwrap();
+    let packings: std::collections::HashSet<_> =
+        container.chunks().map(|chunk| format!("{:?}", chunk.packing)).collect();
+    assert!(packings.contains("None"));
+    assert_eq!(PackedLightField::read(&container).unwrap().decode(1 << 30).unwrap(), packed.decode(1 << 30).unwrap());
 }

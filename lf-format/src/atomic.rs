@@ -1,5 +1,6 @@
 //! Replacing a file in one step.
 
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -11,10 +12,14 @@ use std::path::Path;
 /// file named `.lfslab-….tmp` behind, which can be deleted.
 ///
 /// # Errors
-/// Whatever `write` or the file system returns. The target is then untouched and the temporary file is gone; only if
-/// the last step fails, flushing the folder, the new file is already in place.
+/// [`io::ErrorKind::InvalidInput`] if `path` names no file, or leads to something other than a regular file, such as a
+/// folder, a pipe or a device: a rename would put a file in its place. Otherwise whatever `write` or the file system
+/// returns. The target is then untouched and the temporary file is gone; only if the last step fails, flushing the
+/// folder, the new file is already in place.
 pub fn write_atomic(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let folder = folder_of(path)?;
+    check_target(path)?;
+    let handle = open_folder(folder)?;
     let mut file = temporary().tempfile_in(folder)?;
     let mut out = BufWriter::new(file.as_file_mut());
     write(&mut out)?;
@@ -22,7 +27,7 @@ pub fn write_atomic(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Resul
     drop(out);
     file.as_file().sync_all()?;
     file.persist(path).map_err(|error| error.error)?;
-    sync_folder(folder)
+    handle.map_or(Ok(()), |folder| folder.sync_all())
 }
 
 /// The folder that `path` is in; an error if `path` does not name a file.
@@ -32,6 +37,23 @@ fn folder_of(path: &Path) -> io::Result<&Path> {
     Ok(path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))
 }
 
+/// Makes sure that a rename onto `path` replaces no device, pipe, socket or folder, nor a link to one (`/dev/stdout`).
+///
+/// What cannot be looked at is left to the steps that follow: nothing is there, or they fail for the same reason.
+fn check_target(path: &Path) -> io::Result<()> {
+    if fs::metadata(path).is_ok_and(|target| !target.is_file()) {
+        let what = "there is something that is not a regular file, which must not be replaced by one";
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+    }
+    Ok(())
+}
+
+/// A handle to flush the folder by; opened early, so that what can fail fails before the target changes. Only Unix can
+/// flush a folder.
+fn open_folder(folder: &Path) -> io::Result<Option<File>> {
+    cfg!(unix).then(|| File::open(folder)).transpose()
+}
+
 fn temporary() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".lfslab-").suffix(".tmp");
@@ -39,14 +61,4 @@ fn temporary() -> tempfile::Builder<'static, 'static> {
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
-}
-
-#[cfg(unix)]
-fn sync_folder(folder: &Path) -> io::Result<()> {
-    std::fs::File::open(folder)?.sync_all()
-}
-
-#[cfg(not(unix))]
-fn sync_folder(_folder: &Path) -> io::Result<()> {
-    Ok(())
 }

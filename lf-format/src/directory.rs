@@ -57,6 +57,9 @@ pub enum Packing {
     None,
     /// One zstd frame (spec §7.5).
     Zstd,
+    /// In a way that this version does not know, by its number in the file. Only chunks that a reader skips have it,
+    /// never a tile.
+    Unknown(u8),
 }
 
 impl Packing {
@@ -64,11 +67,16 @@ impl Packing {
         match self {
             Self::None => 0,
             Self::Zstd => 1,
+            Self::Unknown(id) => id,
         }
     }
 
-    fn from_id(id: u8) -> Option<Self> {
-        [Self::None, Self::Zstd].into_iter().find(|packing| packing.id() == id)
+    fn from_id(id: u8) -> Self {
+        match id {
+            0 => Self::None,
+            1 => Self::Zstd,
+            _ => Self::Unknown(id),
+        }
     }
 }
 
@@ -117,10 +125,9 @@ impl ChunkEntry {
         entry
     }
 
-    /// The stored bytes of this chunk.
-    pub(crate) fn payload<'a>(&self, file: &'a [u8]) -> Result<&'a [u8], FormatError> {
-        range(file, self.offset, self.stored_len)
-            .ok_or_else(|| FormatError::malformed(self.offset, "§4.6", format!("{self} reaches beyond the file")))
+    /// The stored bytes of this chunk. All of them, as [`check_layout`] has made sure that they lie within the file.
+    pub(crate) fn payload<'a>(&self, file: &'a [u8]) -> &'a [u8] {
+        range(file, self.offset, self.stored_len).unwrap_or_default()
     }
 
     /// Where the payload ends, bytes from the start of the file.
@@ -129,10 +136,15 @@ impl ChunkEntry {
     }
 
     /// The first 16 bytes of the entry: what the chunk is, wherever it lies.
-    fn identity(&self) -> Vec<u8> {
+    fn identity(&self) -> [u8; 16] {
         let flags = u16::from(self.critical) * CRITICAL + u16::from(self.safe_to_copy) * SAFE_TO_COPY;
-        let numbers = [self.slab.to_le_bytes(), self.tile.to_le_bytes()].concat();
-        [&self.tag.0[..], &flags.to_le_bytes(), &[self.packing.id(), 0], &numbers].concat()
+        let mut out = [0; 16];
+        out[..4].copy_from_slice(&self.tag.0);
+        out[4..6].copy_from_slice(&flags.to_le_bytes());
+        out[6] = self.packing.id();
+        out[8..12].copy_from_slice(&self.slab.to_le_bytes());
+        out[12..].copy_from_slice(&self.tile.to_le_bytes());
+        out
     }
 
     fn compute_checksum(&self, stored: &[u8]) -> u64 {
@@ -153,7 +165,7 @@ impl ChunkEntry {
         let at = cursor.offset();
         let tag = parse_tag(cursor)?;
         let flags = parse_flags(cursor, tag)?;
-        let packing = parse_packing(cursor)?;
+        let packing = parse_packing(cursor, tag)?;
         cursor.reserved::<1>("§4.9")?;
         let entry = Self {
             tag,
@@ -181,12 +193,19 @@ impl ChunkEntry {
             let what = format!("{self} is not packed, but has {stored} stored and {raw} raw bytes");
             return Err(FormatError::malformed(at.saturating_add(32), "§4.7", what));
         }
-        let single = [Tag::GEOM, Tag::META].contains(&self.tag);
-        if single && (self.packing != Packing::None || self.slab != 0 || self.tile != 0) {
-            let what = format!("{self} must be unpacked, with slab and tile 0");
-            return Err(FormatError::malformed(at.saturating_add(6), "§4.4", what));
+        if [Tag::GEOM, Tag::META].contains(&self.tag) { self.check_single(at) } else { Ok(()) }
+    }
+
+    /// The rules for a chunk that a file has once.
+    fn check_single(&self, at: u64) -> Result<(), FormatError> {
+        let wrong = [(6, self.packing != Packing::None), (8, self.slab != 0), (12, self.tile != 0)];
+        match wrong.into_iter().find(|&(_, wrong)| wrong) {
+            None => Ok(()),
+            Some((field, _)) => {
+                let what = format!("{self} must be unpacked, with slab and tile 0");
+                Err(FormatError::malformed(at.saturating_add(field), "§4.4", what))
+            }
         }
-        Ok(())
     }
 }
 
@@ -228,9 +247,15 @@ fn parse_flags(cursor: &mut Cursor<'_>, tag: Tag) -> Result<u16, FormatError> {
     }
 }
 
-fn parse_packing(cursor: &mut Cursor<'_>) -> Result<Packing, FormatError> {
-    let (at, id) = (cursor.offset(), cursor.u8()?);
-    Packing::from_id(id).ok_or_else(|| FormatError::unsupported(at, "§4.3", format!("a chunk uses packing {id}")))
+/// A chunk of a kind that is not known is skipped, however it is packed.
+fn parse_packing(cursor: &mut Cursor<'_>, tag: Tag) -> Result<Packing, FormatError> {
+    let (at, packing) = (cursor.offset(), Packing::from_id(cursor.u8()?));
+    match packing {
+        Packing::Unknown(id) if tag.flags().is_some() => {
+            Err(FormatError::unsupported(at, "§4.3", format!("a {tag} chunk uses packing {id}")))
+        }
+        _ => Ok(packing),
+    }
 }
 
 /// Reads the directory, and makes sure that its chunks cover the file and that all checksums are right.
@@ -256,7 +281,7 @@ pub(crate) fn parse(file: &[u8], header: &Header, limits: &Limits) -> Result<Vec
 }
 
 /// Where an entry, given by its number, begins.
-fn entry_offset(index: usize) -> u64 {
+pub(crate) fn entry_offset(index: usize) -> u64 {
     (index as u64).saturating_mul(ENTRY_LEN as u64).saturating_add(HEADER_LEN as u64)
 }
 
@@ -277,7 +302,10 @@ fn check_layout(file: &[u8], entries: &[ChunkEntry]) -> Result<(), FormatError> 
             let what = format!("{entry} is at {}, must be at {expected}", entry.offset);
             return Err(FormatError::malformed(entry_offset(i).saturating_add(16), "§4.5", what));
         }
-        entry.payload(file)?;
+        if entry.end() > file.len() as u64 {
+            let what = format!("{entry} reaches beyond the file");
+            return Err(FormatError::malformed(entry_offset(i).saturating_add(24), "§4.6", what));
+        }
         let padding = range(file, end, expected.saturating_sub(end)).unwrap_or_default();
         zeros(padding, end, "§4.5", "a padding byte")?;
         end = entry.end();
@@ -290,7 +318,7 @@ fn check_layout(file: &[u8], entries: &[ChunkEntry]) -> Result<(), FormatError> 
 
 fn check_payloads(file: &[u8], entries: &[ChunkEntry]) -> Result<(), FormatError> {
     for (i, entry) in entries.iter().enumerate() {
-        let computed = entry.compute_checksum(entry.payload(file)?);
+        let computed = entry.compute_checksum(entry.payload(file));
         let name = format_args!("{entry} bytes {}..{}", entry.offset, entry.end());
         checksum(entry.checksum, computed, entry_offset(i).saturating_add(40), "§4.8", name)?;
     }

@@ -33,8 +33,10 @@ pub enum FormatError {
         /// What is wrong, with the value found and the value needed.
         what: String,
     },
-    /// The file is sound as far as can be seen, but needs a reader that knows more.
-    #[error("this .lfslab file needs a newer reader: {what} (byte {offset}, spec {clause})")]
+    /// The file is sound as far as can be seen, but uses something that this reader does not know.
+    #[error(
+        "unsupported .lfslab file: {what} (byte {offset}, spec {clause}); another version of the reader may know it"
+    )]
     Unsupported {
         /// Distance in bytes from the start of the file to what is not known.
         offset: u64,

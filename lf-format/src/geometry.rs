@@ -9,6 +9,10 @@ use crate::{FormatError, Limits, SlabTiling, TexelEncoding};
 /// Values are sRGB-encoded and interpolated as they are stored.
 const TRANSFER_SRGB: u8 = 0;
 
+/// Where the record of the first slab begins, from the start of the payload, and how long a record is.
+const RECORDS_AT: u64 = 40;
+const RECORD_LEN: u64 = 68;
+
 type Geometry = (LightFieldGeometry, Vec<SlabTiling>);
 
 /// Reads the chunk's payload, which begins at `offset` in the file.
@@ -28,9 +32,16 @@ pub(crate) fn parse(payload: &[u8], offset: u64, limits: &Limits) -> Result<Geom
         tilings.push(tiling);
     }
     cursor.finish()?;
+    let at = offset.saturating_add(disordered_record(&slabs));
     let geometry = LightFieldGeometry::new(cell, slabs).map_err(rule(at, "§5.3"))?;
     limits.geometry(&geometry, &tilings)?;
     Ok((geometry, tilings))
+}
+
+/// Where the record of the first slab is whose face does not come after the one before, from the start of the payload.
+fn disordered_record(slabs: &[Slab]) -> u64 {
+    let before = slabs.windows(2).take_while(|pair| pair[0].face() < pair[1].face()).count();
+    RECORDS_AT + RECORD_LEN * (before as u64 + 1)
 }
 
 /// Turns a broken rule of geometry into a malformed file.

@@ -6,7 +6,8 @@
 //!
 //! [`Writer`] builds a file, [`Container`] reads one. Reading validates everything first: after
 //! [`Container::parse`] every byte of the file is accounted for and every checksum has been compared, so the accessors
-//! cannot fail. That costs one pass of XXH64 over the file and 48 bytes of memory per chunk; tiles are borrowed.
+//! cannot fail. That costs one pass of XXH64 over the file and a few hundred bytes of memory at most for each chunk,
+//! however long it is; tiles are borrowed.
 //!
 //! The crate knows no codec. It hands out tiles as they are stored and says how they are packed and how long they are
 //! unpacked; it neither unpacks zstd frames nor decodes texels.

@@ -10,9 +10,10 @@ const MAX_VALUE_LEN: usize = 64 << 10;
 
 /// Text values by key, in the order of the keys.
 ///
-/// Keys are 1 to 64 bytes of `a`–`z`, `0`–`9`, `.`, `_` and `-`; values are at most 64 KiB of UTF-8 without NUL. The
-/// specification names some keys (`generator`, `scene`, `license`, `created-by-preset`); others are free. Nothing in
-/// here changes how a file is rendered.
+/// Keys are 1 to 64 bytes of `a`–`z`, `0`–`9`, `.`, `_` and `-`; values are at most 64 KiB of UTF-8 without
+/// ASCII control characters other than tab and line feed, so that they can be shown in a terminal. The specification
+/// names some keys (`generator`, `scene`, `license`, `created-by-preset`); others are free. Nothing in here changes how
+/// a file is rendered.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Metadata(BTreeMap<String, String>);
 
@@ -118,8 +119,9 @@ fn check_key(key: &str) -> Result<(), &'static str> {
 }
 
 fn check_value(value: &str) -> Result<(), &'static str> {
-    if value.len() <= MAX_VALUE_LEN && !value.contains('\0') {
+    let allowed = |byte: u8| !byte.is_ascii_control() || matches!(byte, b'\t' | b'\n');
+    if value.len() <= MAX_VALUE_LEN && value.bytes().all(allowed) {
         return Ok(());
     }
-    Err("a metadata value must be at most 64 KiB and without NUL")
+    Err("a metadata value must be at most 64 KiB and without control characters other than tab and line feed")
 }

@@ -10,7 +10,7 @@ use crate::{ChunkEntry, FormatError, Limits, Metadata, Packing, SlabTiling, Tag,
 /// One tile as it is stored.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct StoredTile<'a> {
-    /// How the bytes are packed.
+    /// How the bytes are packed: not at all or by zstd.
     pub packing: Packing,
     /// The stored bytes: the raw tile itself, or one zstd frame.
     pub bytes: &'a [u8],
@@ -42,8 +42,8 @@ impl<'a> Container<'a> {
     /// Validates a whole file: every rule of the specification but those about the contents of tiles.
     ///
     /// # Errors
-    /// [`FormatError::NotLfslab`] for other kinds of files, `Malformed` for damage, `Unsupported` for what a later
-    /// version may allow, `LimitExceeded` for files larger than the caller wants to handle.
+    /// [`FormatError::NotLfslab`] for other kinds of files, `Malformed` for damage, `Unsupported` for what this
+    /// version does not know, `LimitExceeded` for files larger than the caller wants to handle.
     pub fn parse(bytes: &'a [u8], limits: &Limits) -> Result<Self, FormatError> {
         limits.file_bytes(bytes.len() as u64)?;
         let header = Header::parse(bytes)?;
@@ -96,8 +96,8 @@ fn parse_geometry(
     limits: &Limits,
 ) -> Result<(LightFieldGeometry, Vec<SlabTiling>), FormatError> {
     match chunks.first() {
-        Some(entry) if entry.tag == Tag::GEOM => geometry::parse(entry.payload(file)?, entry.offset, limits),
-        _ => Err(FormatError::malformed(64, "§4.10", "the first chunk is not GEOM")),
+        Some(entry) if entry.tag == Tag::GEOM => geometry::parse(entry.payload(file), entry.offset, limits),
+        _ => Err(FormatError::malformed(directory::entry_offset(0), "§4.10", "the first chunk is not GEOM")),
     }
 }
 
@@ -106,7 +106,7 @@ fn parse_metadata(file: &[u8], chunks: &[ChunkEntry], limits: &Limits) -> Result
         return Ok(Metadata::new());
     };
     limits.metadata_bytes(entry.stored_len)?;
-    Metadata::parse(entry.payload(file)?, entry.offset)
+    Metadata::parse(entry.payload(file), entry.offset)
 }
 
 /// Makes sure that every tile of every slab is there, in order, and as long as the geometry says.
@@ -115,35 +115,40 @@ fn collect_tiles<'a>(
     chunks: &[ChunkEntry],
     tilings: &[SlabTiling],
 ) -> Result<Vec<Vec<StoredTile<'a>>>, FormatError> {
-    let mut stored = chunks.iter().filter(|entry| entry.tag == Tag::TILE);
+    let mut stored = chunks.iter().enumerate().filter(|(_, entry)| entry.tag == Tag::TILE);
     let mut slabs = Vec::new();
     for (slab, tiling) in (0u32..).zip(tilings) {
         let mut tiles = Vec::new();
         for tile in 0..tiling.tile_count() {
-            tiles.push(expect_tile(file, stored.next(), [slab, tile], tiling.raw_len())?);
+            let (index, entry) = stored.next().ok_or_else(|| missing(chunks.len(), [slab, tile]))?;
+            check_tile(index, entry, [slab, tile], tiling.raw_len())?;
+            tiles.push(StoredTile { packing: entry.packing, bytes: entry.payload(file), raw_len: entry.raw_len });
         }
         slabs.push(tiles);
     }
     match stored.next() {
         None => Ok(slabs),
-        Some(extra) => Err(FormatError::malformed(extra.offset, "§4.10", format!("{extra} is one too many"))),
+        Some((index, extra)) => {
+            let what = format!("{extra} is one too many");
+            Err(FormatError::malformed(directory::entry_offset(index), "§4.10", what))
+        }
     }
 }
 
-fn expect_tile<'a>(
-    file: &'a [u8],
-    entry: Option<&ChunkEntry>,
-    [slab, tile]: [u32; 2],
-    raw_len: u64,
-) -> Result<StoredTile<'a>, FormatError> {
-    let Some(entry) = entry.filter(|entry| (entry.slab, entry.tile) == (slab, tile)) else {
-        let offset = entry.map_or(file.len() as u64, |entry| entry.offset);
-        let what = format!("chunk TILE (slab {slab}, tile {tile}) is missing or out of order");
-        return Err(FormatError::malformed(offset, "§4.10", what));
-    };
+/// Holds the TILE entry of number `index` in the directory to the tile that must come next.
+fn check_tile(index: usize, entry: &ChunkEntry, place: [u32; 2], raw_len: u64) -> Result<(), FormatError> {
+    if [entry.slab, entry.tile] != place {
+        return Err(missing(index, place));
+    }
     if entry.raw_len != raw_len {
         let what = format!("{entry} has {} raw bytes, the geometry makes it {raw_len}", entry.raw_len);
-        return Err(FormatError::malformed(entry.offset, "§4.7", what));
+        return Err(FormatError::malformed(directory::entry_offset(index).saturating_add(32), "§4.7", what));
     }
-    Ok(StoredTile { packing: entry.packing, bytes: entry.payload(file)?, raw_len })
+    Ok(())
+}
+
+/// The error of a tile that should be listed by the entry of number `index`, or before.
+fn missing(index: usize, [slab, tile]: [u32; 2]) -> FormatError {
+    let what = format!("chunk TILE (slab {slab}, tile {tile}) is missing or out of order");
+    FormatError::malformed(directory::entry_offset(index), "§4.10", what)
 }

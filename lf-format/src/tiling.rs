@@ -47,6 +47,8 @@ impl TexelEncoding {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SlabTiling {
     encoding: TexelEncoding,
+    cameras: [u32; 2],
+    resolution: [u32; 2],
     cameras_per_tile: [u32; 2],
     tiles: [u32; 2],
     tile_count: u32,
@@ -86,6 +88,8 @@ impl SlabTiling {
         let blocks = u64::from(width / BLOCK) * u64::from(height / BLOCK);
         Some(Self {
             encoding,
+            cameras: slab.cameras(),
+            resolution: slab.resolution(),
             cameras_per_tile,
             tiles,
             tile_count: tiles_s.checked_mul(tiles_t)?,
@@ -99,6 +103,18 @@ impl SlabTiling {
     #[must_use]
     pub fn encoding(&self) -> TexelEncoding {
         self.encoding
+    }
+
+    /// Number of cameras of the slab along s and t.
+    #[must_use]
+    pub fn cameras(&self) -> [u32; 2] {
+        self.cameras
+    }
+
+    /// Texels of one camera image along u and v, without padding.
+    #[must_use]
+    pub fn resolution(&self) -> [u32; 2] {
+        self.resolution
     }
 
     /// Cameras of one tile along s and t, each at least 1.
@@ -135,5 +151,18 @@ impl SlabTiling {
     #[must_use]
     pub fn raw_len(&self) -> u64 {
         self.raw_len
+    }
+
+    /// Where the image of a camera (s, t) is: the number of its tile, and the place `[x, y]` of its first texel in the
+    /// tile's picture, x to the right and y down (spec §7.6, steps 1 and 2). `None` if the slab has no such camera.
+    #[must_use]
+    pub fn place(&self, camera: [u32; 2]) -> Option<(u32, [u32; 2])> {
+        let ([s, t], [per_s, per_t], [pitch_u, pitch_v]) = (camera, self.cameras_per_tile, self.image_pitch);
+        if s >= self.cameras[0] || t >= self.cameras[1] {
+            return None;
+        }
+        // Nothing overflows: the tile is below `tile_count`, the place within `tile_size`.
+        let tile = t / per_t * self.tiles[0] + s / per_s;
+        Some((tile, [s % per_s * pitch_u, t % per_t * pitch_v]))
     }
 }

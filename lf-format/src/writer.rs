@@ -55,8 +55,9 @@ impl Writer {
     /// Adds one tile of a slab, a position in the geometry, packed as `packing` says.
     ///
     /// # Errors
-    /// [`FormatError::InvalidArgument`] if there is no such tile, it is there already, the bytes are empty, or they are
-    /// not packed and not [`SlabTiling::raw_len`] long. Packed bytes are not looked into.
+    /// [`FormatError::InvalidArgument`] if there is no such tile, it is there already, the packing is
+    /// [`Packing::Unknown`], the bytes are empty, or they are not packed and not [`SlabTiling::raw_len`] long. Packed
+    /// bytes are not looked into.
     pub fn add_tile(&mut self, slab: usize, tile: u32, packing: Packing, bytes: Vec<u8>) -> Result<(), FormatError> {
         let refuse = |why: &str| Err(FormatError::argument(format!("tile {tile} of slab {slab} {why}")));
         let place = self.tiles.get_mut(slab).and_then(|tiles| tiles.get_mut(tile as usize));
@@ -65,6 +66,9 @@ impl Writer {
         };
         if place.is_some() {
             return refuse("was added before");
+        }
+        if let Packing::Unknown(id) = packing {
+            return refuse(&format!("uses packing {id}, which no reader knows"));
         }
         let (len, raw_len) = (bytes.len() as u64, tiling.raw_len());
         if len == 0 || (packing == Packing::None && len != raw_len) {

@@ -9,12 +9,10 @@ use crate::storage::Storage;
 #[non_exhaustive]
 pub enum GpuError {
     /// No Vulkan, Metal or Direct3D 12 adapter was found.
-    #[error(
-        "no GPU adapter found (Vulkan, Metal or Direct3D 12); on Debian, mesa-vulkan-drivers is a software one: {0}"
-    )]
+    #[error("no GPU adapter found (Vulkan, Metal or Direct3D 12); on Debian, mesa-vulkan-drivers is a software one")]
     NoAdapter(#[from] wgpu::RequestAdapterError),
     /// The adapter gave no device.
-    #[error("the GPU adapter gives no device: {0}")]
+    #[error("the GPU adapter gives no device")]
     NoDevice(#[from] wgpu::RequestDeviceError),
     /// The light field does not fit the device in this form.
     #[error("{storage} cannot hold this light field on {adapter}: {why}")]

@@ -1,5 +1,8 @@
 //! The device.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::error::GpuError;
 
 /// An open GPU device.
@@ -7,6 +10,7 @@ pub struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
+    lost: Arc<AtomicBool>,
 }
 
 /// Vulkan, Metal and Direct3D 12. OpenGL is left out: a driver we tried claims BC1 in 3D textures and samples black.
@@ -47,7 +51,10 @@ impl Gpu {
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))?;
-        Ok(Self { device, queue, info: adapter.get_info() })
+        let lost = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&lost);
+        device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
+        Ok(Self { device, queue, info: adapter.get_info(), lost })
     }
 
     /// Name and API of the adapter.
@@ -65,18 +72,22 @@ impl Gpu {
     /// Waits until all submitted work is done.
     ///
     /// # Errors
-    /// If the device was lost.
+    /// If the device is known to be lost.
     pub fn wait(&self) -> Result<(), GpuError> {
+        if self.lost.load(Ordering::Relaxed) {
+            return Err(GpuError::Refused { what: "to go on", why: "the device was lost".to_owned() });
+        }
         let refused = |e: wgpu::PollError| GpuError::Refused { what: "to finish its work", why: e.to_string() };
         self.device.poll(wgpu::PollType::wait_indefinitely()).map(|_| ()).map_err(refused)
     }
 
-    /// Runs `make` and turns validation and out-of-memory errors into a result.
+    /// Runs `make` and turns the device's errors into a result.
     pub(crate) fn checked<T>(&self, what: &'static str, make: impl FnOnce() -> T) -> Result<T, GpuError> {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let made = make();
-        let errors = [pollster::block_on(validation.pop()), pollster::block_on(memory.pop())];
+        let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
         match errors.into_iter().flatten().next() {
             Some(error) => Err(GpuError::Refused { what, why: error.to_string() }),
             None => Ok(made),

@@ -1,23 +1,22 @@
 //! The passes that draw a mirror.
 
 use glam::Vec3;
-use lf_compress::PackedLightField;
-use lf_math::{CubeMap, Pinhole, TriangleMesh};
+use lf_math::{CubeMap, Pinhole, TriangleMesh, near_plane};
 use wgpu::util::DeviceExt;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
 use crate::storage::{SlabTexture, Storage};
 use crate::target::Target;
-use crate::uniforms::{FrameUniform, SlabsUniform};
+use crate::uniforms::FrameUniform;
 
 /// A reflective mesh on the device.
 pub struct MirrorMesh {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     index_count: u32,
-    /// A ball around the mesh: centre and radius, cell space.
-    ball: (Vec3, f32),
+    /// The mesh's bounding box, cell space.
+    bounds: (Vec3, Vec3),
 }
 
 /// A pipeline with the environment it reflects.
@@ -58,51 +57,46 @@ pub(crate) fn bilinear_sampler(gpu: &Gpu) -> wgpu::Sampler {
     })
 }
 
-/// A buffer with the given contents.
+/// A buffer with the given contents; must run in [`Gpu::checked`].
 pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+    // Not mapped at creation: that panics where the device has too little memory.
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: contents.len() as u64,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, contents);
+    buffer
 }
 
 impl MirrorMesh {
     /// Uploads a mesh given in cell space.
     ///
     /// # Errors
-    /// If the device is out of memory.
+    /// If the mesh is too large for the device.
     pub fn new(gpu: &Gpu, mesh: &TriangleMesh) -> Result<Self, GpuError> {
         let vertices: Vec<[Vec3; 2]> =
             mesh.positions().iter().copied().zip(mesh.normals().iter().copied()).map(Into::into).collect();
-        let (min, max) = mesh.bounds();
-        let ball = (0.5 * (min + max), 0.5 * (max - min).length());
         gpu.checked("the mirror's buffers", || Self {
             vertices: buffer(gpu, "vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
             indices: buffer(gpu, "indices", bytemuck::cast_slice(mesh.triangles()), wgpu::BufferUsages::INDEX),
             index_count: 3 * mesh.triangles().len() as u32,
-            ball,
+            bounds: mesh.bounds(),
         })
-    }
-
-    /// A near plane in front of all but the closest thousandth of the mesh's reach.
-    fn near_plane(&self, eye: Vec3) -> f32 {
-        (1e-3 * ((self.ball.0 - eye).length() + self.ball.1)).max(f32::MIN_POSITIVE)
     }
 }
 
 impl ReflectionPass {
-    /// Reflections from light field slabs: `field` gives the geometry of what `texture` holds.
+    /// Reflections from light field slabs.
     ///
     /// # Errors
     /// If the device refuses the pipeline.
-    pub fn slabs(gpu: &Gpu, field: &PackedLightField, texture: &SlabTexture) -> Result<Self, GpuError> {
+    pub fn slabs(gpu: &Gpu, texture: &SlabTexture) -> Result<Self, GpuError> {
         gpu.checked("the slab pipeline", || {
-            let slabs = SlabsUniform::new(field);
-            let uniform = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
             let sampler = bilinear_sampler(gpu);
-            let resources = [
-                (1, uniform.as_entire_binding()),
-                (2, wgpu::BindingResource::Sampler(&sampler)),
-                (3, wgpu::BindingResource::TextureView(&texture.view)),
-            ];
-            Self::new(gpu, &shader_source(Some(texture.storage), false), resources)
+            let resources = texture.bindings(&sampler);
+            Self::new(gpu, &shader_source(Some(texture.storage()), false), resources)
         })
     }
 
@@ -141,25 +135,32 @@ impl ReflectionPass {
     }
 
     /// Submits one frame: clears the target to transparent black and draws the mirror as `camera` sees it. The target
-    /// should have the camera's size. Returns at once; see [`Gpu::wait`] and [`Target::read`].
-    pub fn draw(&self, gpu: &Gpu, target: &Target, mesh: &MirrorMesh, camera: &Pinhole) {
-        let frame = FrameUniform::new(camera, mesh.near_plane(camera.eye()));
-        gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("mirror"),
-                color_attachments: &[Some(clear_color(&target.color))],
-                depth_stencil_attachment: Some(clear_depth(&target.depth)),
-                ..Default::default()
-            });
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &self.bindings, &[]);
-            pass.set_vertex_buffer(0, mesh.vertices.slice(..));
-            pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..mesh.index_count, 0, 0..1);
-        }
-        gpu.queue.submit([encoder.finish()]);
+    /// should have the camera's size. Returns before the frame is finished; see [`Gpu::wait`] and [`Target::read`].
+    ///
+    /// # Errors
+    /// If the device refuses a command.
+    pub fn draw(&self, gpu: &Gpu, target: &Target, mesh: &MirrorMesh, camera: &Pinhole) -> Result<(), GpuError> {
+        gpu.checked("a frame", || {
+            let frame = FrameUniform::new(camera, near_plane(camera.eye(), mesh.bounds));
+            gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            self.encode(&mut encoder, target, mesh);
+            gpu.queue.submit([encoder.finish()]);
+        })
+    }
+
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder, target: &Target, mesh: &MirrorMesh) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("mirror"),
+            color_attachments: &[Some(clear_color(&target.color))],
+            depth_stencil_attachment: Some(clear_depth(&target.depth)),
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bindings, &[]);
+        pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+        pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..mesh.index_count, 0, 0..1);
     }
 }
 
@@ -168,8 +169,9 @@ pub(crate) fn clear_color(view: &wgpu::TextureView) -> wgpu::RenderPassColorAtta
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
+/// Reversed depth: 0 is infinitely far.
 fn clear_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard };
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
     wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
 }
 
@@ -197,7 +199,7 @@ fn mirror_pipeline(gpu: &Gpu, source: &str) -> wgpu::RenderPipeline {
         depth_stencil: Some(wgpu::DepthStencilState {
             format: Target::DEPTH,
             depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Less),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),

@@ -1,7 +1,6 @@
 //! Single samples read through the shader, for tests and tools.
 
 use glam::Vec2;
-use lf_compress::PackedLightField;
 use lf_math::Face;
 
 use crate::error::GpuError;
@@ -9,7 +8,7 @@ use crate::gpu::Gpu;
 use crate::pass::{bilinear_sampler, buffer, clear_color, shader_source};
 use crate::storage::SlabTexture;
 use crate::target::Target;
-use crate::uniforms::{ProbeUniform, SlabsUniform};
+use crate::uniforms::ProbeUniform;
 
 /// Probes in a row of the picture they are drawn into.
 pub(crate) const PER_ROW: u32 = 512;
@@ -28,42 +27,48 @@ pub struct Probe {
 /// What the slab shader fetches for each probe, as 8-bit values, one pixel each.
 ///
 /// # Errors
-/// If the device refuses the pass, or if there are more probes than its largest picture has pixels.
-pub fn read_probes(
-    gpu: &Gpu,
-    field: &PackedLightField,
-    texture: &SlabTexture,
-    probes: &[Probe],
-) -> Result<Vec<[u8; 4]>, GpuError> {
+/// If a probe lies outside the light field, if the device refuses the pass, or if there are more probes than its largest
+/// picture has pixels.
+pub fn read_probes(gpu: &Gpu, texture: &SlabTexture, probes: &[Probe]) -> Result<Vec<[u8; 4]>, GpuError> {
     if probes.is_empty() {
         return Ok(vec![]);
+    }
+    if let Some(outside) = probes.iter().find(|probe| !probe.is_inside(texture)) {
+        return Err(GpuError::Refused { what: "a probe", why: format!("{outside:?} is outside the light field") });
     }
     let rows = probes.len().div_ceil(PER_ROW as usize);
     let height = u32::try_from(rows).unwrap_or(u32::MAX);
     let target = Target::new(gpu, PER_ROW, height)?;
-    gpu.checked("the probe pass", || draw(gpu, field, texture, probes, &target))?;
+    gpu.checked("the probe pass", || draw(gpu, texture, probes, &target))?;
     let picture = target.read(gpu)?;
     Ok(picture.texels()[..probes.len()].to_vec())
 }
 
-fn draw(gpu: &Gpu, field: &PackedLightField, texture: &SlabTexture, probes: &[Probe], target: &Target) {
-    let pipeline = pipeline(gpu, &shader_source(Some(texture.storage), true));
+impl Probe {
+    fn is_inside(&self, texture: &SlabTexture) -> bool {
+        let slab = texture.geometry().slabs().iter().find(|slab| slab.face() == self.face);
+        slab.is_some_and(|slab| {
+            let camera = (0..2).all(|i| self.camera[i] < slab.cameras()[i]);
+            let last = Vec2::from(slab.uv().map(|axis| axis.last_index()));
+            camera && self.uv.cmpge(Vec2::ZERO).all() && self.uv.cmple(last).all()
+        })
+    }
+}
+
+fn draw(gpu: &Gpu, texture: &SlabTexture, probes: &[Probe], target: &Target) {
+    let pipeline = pipeline(gpu, &shader_source(Some(texture.storage()), true));
     let raw = |p: &Probe| ProbeUniform { uv: p.uv, camera: p.camera, face: p.face.index().into(), padding: 0 };
     let raw: Vec<_> = probes.iter().map(raw).collect();
     let list = buffer(gpu, "probes", bytemuck::cast_slice(&raw), wgpu::BufferUsages::STORAGE);
-    let slabs = SlabsUniform::new(field);
-    let uniform = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
     let sampler = bilinear_sampler(gpu);
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    let mut entries = vec![wgpu::BindGroupEntry { binding: 4, resource: list.as_entire_binding() }];
+    for (binding, resource) in texture.bindings(&sampler) {
+        entries.push(wgpu::BindGroupEntry { binding, resource });
+    }
     let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("probe"),
         layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            entry(1, uniform.as_entire_binding()),
-            entry(2, wgpu::BindingResource::Sampler(&sampler)),
-            entry(3, wgpu::BindingResource::TextureView(&texture.view)),
-            entry(4, list.as_entire_binding()),
-        ],
+        entries: &entries,
     });
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {

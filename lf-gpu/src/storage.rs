@@ -6,9 +6,12 @@ use std::fmt;
 use lf_compress::PackedLightField;
 use lf_compress::bc1;
 use lf_compress::format::TexelEncoding;
+use lf_math::LightFieldGeometry;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
+use crate::pass::buffer;
+use crate::uniforms::SlabsUniform;
 
 /// More texture bytes than this are refused: some drivers abort the program instead of reporting that memory is out.
 const MAX_TEXTURE_BYTES: u64 = 4 << 30;
@@ -34,10 +37,15 @@ impl fmt::Display for Storage {
     }
 }
 
+/// Texture bytes handed to the queue before it is made to pass them on: until then it keeps a copy of each.
+const UPLOAD_BATCH: usize = 64 << 20;
+
 /// A light field on the device.
 pub struct SlabTexture {
-    pub(crate) view: wgpu::TextureView,
-    pub(crate) storage: Storage,
+    view: wgpu::TextureView,
+    uniform: wgpu::Buffer,
+    storage: Storage,
+    geometry: LightFieldGeometry,
     bytes: u64,
 }
 
@@ -128,16 +136,41 @@ impl SlabTexture {
         }
         let descriptor = storage.descriptor(field.layout().size());
         let texture = gpu.checked("the slab texture", || gpu.device.create_texture(&descriptor))?;
+        let mut waiting = 0;
         for (slab, layout) in field.layout().slabs().iter().enumerate() {
             for (slice, tile) in (layout.first_slice()..).zip(field.tiles(slab)) {
                 let size = field.tilings()[slab].tile_size();
                 let bytes = texture_bytes(storage, field.tilings()[slab].encoding(), size, tile)?;
                 gpu.checked("a slice of the slab texture", || upload(gpu, &texture, storage, slice, size, &bytes))?;
+                waiting += bytes.len();
+                if waiting >= UPLOAD_BATCH {
+                    gpu.queue.submit([]);
+                    waiting = 0;
+                }
             }
         }
         let dimension = Some(storage.view_dimension());
-        let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() });
-        Ok(Self { view, storage, bytes: storage.bytes(field) })
+        let (view, uniform) = gpu.checked("the slab texture's view", || {
+            let slabs = SlabsUniform::new(field);
+            let uniform = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
+            (texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() }), uniform)
+        })?;
+        Ok(Self { view, uniform, storage, geometry: field.geometry().clone(), bytes: storage.bytes(field) })
+    }
+
+    /// The resources that slabs.wgsl asks for.
+    pub(crate) fn bindings<'a>(&'a self, sampler: &'a wgpu::Sampler) -> [(u32, wgpu::BindingResource<'a>); 3] {
+        [
+            (1, self.uniform.as_entire_binding()),
+            (2, wgpu::BindingResource::Sampler(sampler)),
+            (3, wgpu::BindingResource::TextureView(&self.view)),
+        ]
+    }
+
+    /// The cell and the slabs.
+    #[must_use]
+    pub fn geometry(&self) -> &LightFieldGeometry {
+        &self.geometry
     }
 
     /// The form in which it lies on the device.

@@ -108,6 +108,21 @@ mod tests {
         (members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset)).collect(), *span)
     }
 
+    fn parsed(source: &str) -> wgpu::naga::Module {
+        wgpu::naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)))
+    }
+
+    #[test]
+    fn every_shader_is_valid() {
+        use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+        for storage in [None, Some(Storage::Bc1Volume), Some(Storage::Bc1Array), Some(Storage::Rgba8Array)] {
+            for probe in [false, storage.is_some()] {
+                let module = parsed(&shader_source(storage, probe));
+                Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).expect("valid");
+            }
+        }
+    }
+
     macro_rules! same_layout {
         ($module:expr, $name:literal, $rust:ty, $($field:ident),+) => {{
             let expected = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field) as u32)),+];
@@ -117,8 +132,7 @@ mod tests {
 
     #[test]
     fn rust_and_wgsl_agree_on_every_offset() {
-        let source = shader_source(Some(Storage::Bc1Volume), true);
-        let module = wgpu::naga::front::wgsl::parse_str(&source).expect("the shader parses");
+        let module = parsed(&shader_source(Some(Storage::Bc1Volume), true));
         same_layout!(&module, "Frame", FrameUniform, clip_from_cell, eye, padding);
         same_layout!(
             &module,

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 use lf_math::{CubeCoord, CubeMap, Face, Image, Ray, cube_coord, cube_direction};
 
+use crate::bilinear::bilinear;
 use crate::frame::Environment;
 
 /// A cube map with a border of one texel around each face, so that bilinear interpolation crosses the edges as it does
@@ -27,16 +28,8 @@ impl Environment for CubeField {
         let coord = cube_coord(ray.direction)?;
         let image = &self.faces[usize::from(coord.face.index())];
         // Texel centres of the face are at ½; the border adds one.
-        let position = coord.uv * self.size as f32 + 0.5;
-        let low = position.floor().min(Vec2::splat(self.size as f32));
-        let fraction = position - low;
-        let (x, y) = (low.x as u32, low.y as u32);
-        let texel = |x: u32, y: u32| {
-            let [r, g, b, _] = image.get(x, y);
-            Vec3::new(f32::from(r), f32::from(g), f32::from(b))
-        };
-        let row = |y: u32| texel(x, y).lerp(texel(x + 1, y), fraction.x);
-        Some(row(y).lerp(row(y + 1), fraction.y) / 255.0)
+        let position = (coord.uv * self.size as f32 + 0.5).min(Vec2::splat(self.size as f32 + 0.5));
+        Some(bilinear(position, |x, y| image.get(x as u32, y as u32)))
     }
 }
 

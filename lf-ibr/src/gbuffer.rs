@@ -4,12 +4,10 @@
 //! shared edges by the top-left rule, attributes interpolated with perspective, nearest surface kept.
 
 use glam::{Vec3, Vec4};
-use lf_math::{Image, Pinhole, TriangleMesh};
+use lf_math::{Image, Pinhole, TriangleMesh, near_plane};
 
 /// Subpixel steps of the snapped coordinates, as Vulkan requires at least 4 bits of and common GPUs have 8 bits of.
 const SUBPIXEL: f32 = 256.0;
-/// What is closer to the eye than this share of the mesh's distance is clipped.
-const NEAR_SHARE: f32 = 1e-3;
 
 /// The reflector at one pixel, cell space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,8 +36,7 @@ impl GBuffer {
     /// Draws a mesh given in cell space. Time grows with the triangles and the pixels they cover.
     #[must_use]
     pub fn rasterize(mesh: &TriangleMesh, camera: &Pinhole) -> Self {
-        let near = near_plane(mesh, camera.eye());
-        let clip_from_cell = camera.clip_from_cell(near);
+        let clip_from_cell = camera.clip_from_cell(near_plane(camera.eye(), mesh.bounds()));
         let vertex = |i: usize| {
             let fragment = Fragment { position: mesh.positions()[i], normal: mesh.normals()[i] };
             ClipVertex { clip: clip_from_cell * fragment.position.extend(1.0), fragment }
@@ -48,7 +45,7 @@ impl GBuffer {
         let mut target = Target::new(camera.width(), camera.height());
         for triangle in mesh.triangles() {
             let corners = triangle.map(|i| vertices[i as usize]);
-            if corners.iter().all(|v| v.clip.z > 0.0) {
+            if corners.iter().all(|v| v.beyond_near() > 0.0) {
                 target.triangle(&corners);
             } else {
                 let polygon = clip_near(&corners);
@@ -73,28 +70,27 @@ impl GBuffer {
     }
 }
 
-/// A near plane that keeps all of a mesh in front of the eye but a thousandth of its distance.
-fn near_plane(mesh: &TriangleMesh, eye: Vec3) -> f32 {
-    let (min, max) = mesh.bounds();
-    let reach = (0.5 * (min + max) - eye).length() + 0.5 * (max - min).length();
-    (NEAR_SHARE * reach).max(f32::MIN_POSITIVE)
-}
-
-/// Cuts a triangle at the near plane z = 0 (Sutherland & Hodgman 1974); up to four corners remain.
+/// Cuts a triangle at the near plane, z = w in reversed depth (Sutherland & Hodgman 1974); up to four corners remain.
 fn clip_near(corners: &[ClipVertex; 3]) -> Vec<ClipVertex> {
     let mut kept = Vec::with_capacity(4);
     for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (&corners[i], &corners[j])) {
-        if a.clip.z > 0.0 {
+        let (from, to) = (a.beyond_near(), b.beyond_near());
+        if from > 0.0 {
             kept.push(*a);
         }
-        if (a.clip.z > 0.0) != (b.clip.z > 0.0) {
-            kept.push(a.towards(b, a.clip.z / (a.clip.z - b.clip.z)));
+        if (from > 0.0) != (to > 0.0) {
+            kept.push(a.towards(b, from / (from - to)));
         }
     }
     kept
 }
 
 impl ClipVertex {
+    /// How far the vertex lies beyond the near plane.
+    fn beyond_near(&self) -> f32 {
+        self.clip.w - self.clip.z
+    }
+
     fn towards(&self, other: &Self, share: f32) -> Self {
         let fragment = Fragment {
             position: self.fragment.position.lerp(other.fragment.position, share),
@@ -118,12 +114,13 @@ impl Target {
         }
     }
 
-    /// Pixel coordinates in subpixels, y down. Far outside the screen they saturate, which only moves what is not seen.
+    /// Pixel coordinates in subpixels, y down. They saturate at 4 million pixels, where `edge` still fits in 64 bits; only an
+    /// edge that runs so far outside the picture is bent by it.
     fn snap(&self, clip: Vec4) -> [i64; 2] {
         let (width, height) = (self.fragments.width() as f32, self.fragments.height() as f32);
         let x = (0.5 + 0.5 * clip.x / clip.w) * width;
         let y = (0.5 - 0.5 * clip.y / clip.w) * height;
-        [x, y].map(|v| (v * SUBPIXEL).round().clamp(-1e8, 1e8) as i64)
+        [x, y].map(|v| (v * SUBPIXEL).round().clamp(-1e9, 1e9) as i64)
     }
 
     fn triangle(&mut self, corners: &[ClipVertex; 3]) {

@@ -11,6 +11,7 @@
 
 #![forbid(unsafe_code)]
 
+mod bilinear;
 mod cube;
 mod frame;
 mod gbuffer;

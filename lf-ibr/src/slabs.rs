@@ -1,8 +1,9 @@
 //! Reflections from light field slabs.
 
-use glam::{Vec2, Vec3};
-use lf_math::{GeometryError, LightFieldGeometry, Ray, SlabTexels};
+use glam::Vec3;
+use lf_math::{CameraTap, GeometryError, LightFieldGeometry, Ray, SlabTexels};
 
+use crate::bilinear::bilinear;
 use crate::frame::Environment;
 
 /// Slabs with their decoded texels.
@@ -42,24 +43,16 @@ impl Environment for SlabField {
         let indexed = self.geometry.index_ray(ray)?;
         let (slab, texels) = (&self.geometry.slabs()[indexed.slab], &self.texels[indexed.slab]);
         let taps = slab.taps(&indexed.coord);
-        Some(taps.iter().map(|tap| tap.weight * bilinear(texels, tap.camera, tap.uv)).sum())
+        Some(taps.iter().map(|tap| tap.weight * fetch(texels, tap)).sum())
     }
 }
 
-/// Bilinear fetch at index units `uv`, which must lie within the image. Result in 0 … 1.
-fn bilinear(texels: &SlabTexels, camera: [u32; 2], uv: Vec2) -> Vec3 {
-    let [width, height] = texels.resolution();
-    let image = texels.image(camera);
-    let low = uv.floor();
-    let fraction = uv - low;
-    let (x, y) = (low.x as u32, low.y as u32);
-    let (next_x, next_y) = ((x + 1).min(width - 1), (y + 1).min(height - 1));
-    let texel = |x: u32, y: u32| {
-        let [r, g, b, _] = image[(y * width + x) as usize];
-        Vec3::new(f32::from(r), f32::from(g), f32::from(b))
-    };
-    let row = |y: u32| texel(x, y).lerp(texel(next_x, y), fraction.x);
-    row(y).lerp(row(next_y), fraction.y) / 255.0
+/// Bilinear fetch from one camera's image at index units `uv`, which must lie within it. Result in 0 … 1.
+fn fetch(texels: &SlabTexels, tap: &CameraTap) -> Vec3 {
+    let [width, height] = texels.resolution().map(|n| n as usize);
+    let image = texels.image(tap.camera);
+    // A neighbour past the edge weighs nothing.
+    bilinear(tap.uv, |x, y| image[y.min(height - 1) * width + x.min(width - 1)])
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@ use crate::error::{GeometryError, finite, positive};
 /// `count` samples at `first + i·step`, `i = 0 … count − 1`.
 ///
 /// This is one row of the paper's Eq. 1, `s′ = s·s₁ + s₀`, in a form that has no special case for a single sample.
-/// Sample `i` lies at `i` in *index units*; in texel space its centre is at `i + ½`.
+/// Sample `i` lies at `i` in *index units*; in texel space its centre is at `i + ½`. There are at most 2²⁴ samples, so
+/// that every index is exact in `f32`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SampledAxis {
     first: f32,
@@ -17,13 +18,11 @@ impl SampledAxis {
     /// Samples at `first + i·step`.
     ///
     /// # Errors
-    /// `first` must be finite, `step` finite and greater than 0, `count` at least 1, and the last sample finite.
+    /// `first` must be finite, `step` finite and greater than 0, `count` 1 to 2²⁴, and the last sample finite.
     pub fn new(first: f32, step: f32, count: u32) -> Result<Self, GeometryError> {
+        check_count(count)?;
         finite("first sample", first)?;
         positive("sample step", step)?;
-        if count == 0 {
-            return Err(GeometryError::ZeroCount { what: "sample count" });
-        }
         let axis = Self { first, step, count };
         finite("last sample", axis.last())?;
         Ok(axis)
@@ -34,10 +33,11 @@ impl SampledAxis {
     /// # Errors
     /// As [`Self::new`]; `max` must exceed `min`.
     pub fn spanning(min: f32, max: f32, count: u32) -> Result<Self, GeometryError> {
+        check_count(count)?;
         let extent = positive("axis extent", max - min)?;
         match count {
             1 => Self::new(min + 0.5 * extent, extent, 1),
-            _ => Self::new(min, extent / count.saturating_sub(1) as f32, count),
+            _ => Self::new(min, extent / (count - 1) as f32, count),
         }
     }
 
@@ -83,12 +83,22 @@ impl SampledAxis {
         (coord - self.first) / self.step
     }
 
-    /// Whether a real-valued index lies within the samples, allowing for the rounding of [`Self::index`]
-    /// (a few ulp of the axis' whole length).
+    /// Whether a real-valued index lies within the samples, allowing for the rounding of [`Self::index`]: a few ulp of the
+    /// coordinates at the ends, in steps.
     #[must_use]
     pub fn contains_index(&self, index: f32) -> bool {
-        let slack = 8.0 * f32::EPSILON * self.count as f32;
+        let reach = (self.first.abs() + self.last().abs()) / self.step;
+        let slack = 4.0 * f32::EPSILON * (self.count as f32 + reach);
         index >= -slack && index <= self.last_index() + slack
+    }
+}
+
+fn check_count(count: u32) -> Result<(), GeometryError> {
+    const MAX: u32 = 1 << f32::MANTISSA_DIGITS;
+    match count {
+        0 => Err(GeometryError::ZeroCount { what: "sample count" }),
+        1..=MAX => Ok(()),
+        _ => Err(GeometryError::TooMany { what: "sample count", count, max: MAX }),
     }
 }
 
@@ -120,7 +130,18 @@ mod tests {
         assert!(SampledAxis::new(f32::NAN, 1.0, 4).is_err());
         assert!(SampledAxis::new(0.0, f32::MAX, 4).is_err());
         assert!(SampledAxis::spanning(1.0, 1.0, 2).is_err());
-        assert!(SampledAxis::spanning(0.0, 1.0, 0).is_err());
+        assert_eq!(SampledAxis::spanning(0.0, 1.0, 0), Err(GeometryError::ZeroCount { what: "sample count" }));
+        assert!(matches!(SampledAxis::new(0.0, 1e-9, (1 << 24) + 1), Err(GeometryError::TooMany { .. })));
+    }
+
+    #[test]
+    fn the_largest_axis_and_far_ones_contain_their_ends() {
+        let largest = SampledAxis::new(0.0, 1.0, 1 << 24).unwrap();
+        assert_eq!(largest.last_index() as u32, (1 << 24) - 1);
+        for axis in [largest, SampledAxis::new(1000.0, 1e-3, 5).unwrap(), SampledAxis::new(-7e8, 64.0, 3).unwrap()] {
+            assert!(axis.contains_index(axis.index(axis.last())), "{axis:?}");
+            assert!(!axis.contains_index(axis.index(axis.last() + axis.step())), "{axis:?}");
+        }
     }
 
     proptest! {

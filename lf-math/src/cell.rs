@@ -73,10 +73,10 @@ impl Cell {
     /// point where it leaves the first of the three slabs. A component of zero contributes +∞ inside its slab and −∞
     /// outside. The result is therefore clamped to where the line enters and leaves the slab of its dominant axis.
     ///
-    /// Returns `None` for a direction that is zero or not finite.
+    /// Returns `None` for a direction that is zero or not finite, or an origin that is not finite.
     #[must_use]
     pub fn exit(&self, ray: &Ray) -> Option<f32> {
-        let axis = crate::Face::dominant(ray.direction)?.axis();
+        let axis = crate::Face::dominant(ray.direction).filter(|_| ray.origin.is_finite())?.axis();
         let towards = self.half_extent * Vec3::ONE.copysign(ray.direction);
         let exits = (towards - ray.origin) / ray.direction;
         // 0/0: the line lies in a face's plane, which counts as inside.
@@ -117,6 +117,7 @@ mod tests {
         for direction in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY] {
             assert_eq!(unit_cell().exit(&Ray { origin: Vec3::ZERO, direction }), None);
         }
+        assert_eq!(unit_cell().exit(&Ray { origin: Vec3::NAN, direction: Vec3::X }), None);
     }
 
     #[test]

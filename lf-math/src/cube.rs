@@ -26,13 +26,10 @@ impl CubeMap {
     /// # Errors
     /// All six must be square and of one size.
     pub fn new(faces: [Image<[u8; 4]>; 6]) -> Result<Self, GeometryError> {
-        let size = faces[0].width();
-        for face in &faces {
-            for len in [face.width(), face.height()] {
-                if len != size {
-                    let (len, expected) = (len as usize, size as usize);
-                    return Err(GeometryError::Length { what: "edge of a cube map face", len, expected });
-                }
+        let want = [faces[0].width(); 2];
+        for have in faces.each_ref().map(|face| [face.width(), face.height()]) {
+            if have != want {
+                return Err(GeometryError::Size { what: "cube map face", have, want });
             }
         }
         Ok(Self { faces })

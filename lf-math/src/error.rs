@@ -47,6 +47,36 @@ pub enum GeometryError {
         /// The length that was needed.
         expected: usize,
     },
+    /// Two sizes that have to be equal are not.
+    #[error("{what} has size {}×{}, expected {}×{}", have[0], have[1], want[0], want[1])]
+    Size {
+        /// What has the size.
+        what: &'static str,
+        /// Its size.
+        have: [u32; 2],
+        /// The size that was needed.
+        want: [u32; 2],
+    },
+    /// A count above what indices in `f32` can tell apart.
+    #[error("{what} is {count}, at most {max} can be told apart")]
+    TooMany {
+        /// Which count.
+        what: &'static str,
+        /// Its value.
+        count: u32,
+        /// The largest possible.
+        max: u32,
+    },
+    /// A number too large to calculate with.
+    #[error("{what} is {value}, beyond ±{max}")]
+    TooLarge {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f32,
+        /// The largest that works.
+        max: f32,
+    },
     /// A triangle names a vertex that does not exist.
     #[error("triangle index {index} is out of range for {vertices} vertices")]
     VertexIndex {

@@ -21,7 +21,8 @@ impl<T: Copy> Image<T> {
         if width == 0 || height == 0 {
             return Err(GeometryError::ZeroCount { what: "image size" });
         }
-        let expected = width as usize * height as usize;
+        // A product past the address space cannot equal any length.
+        let expected = (width as usize).saturating_mul(height as usize);
         if texels.len() != expected {
             return Err(GeometryError::Length { what: "image", len: texels.len(), expected });
         }
@@ -29,6 +30,9 @@ impl<T: Copy> Image<T> {
     }
 
     /// An image of one value. Sizes of 0 are raised to 1.
+    ///
+    /// # Panics
+    /// If the memory cannot be had.
     #[must_use]
     pub fn filled(width: u32, height: u32, value: T) -> Self {
         let (width, height) = (width.max(1), height.max(1));

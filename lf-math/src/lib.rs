@@ -42,7 +42,11 @@ pub use geometry::{IndexedRay, LightFieldGeometry, PlanePlacement};
 pub use image::Image;
 pub use mesh::TriangleMesh;
 pub use metrics::{ImageError, image_error};
-pub use pinhole::Pinhole;
+pub use pinhole::{Pinhole, near_plane};
 pub use ray::{Ray, normalized, reflect};
 pub use slab::{CameraTap, Slab, SlabCoord};
 pub use texels::SlabTexels;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use crate::error::{GeometryError, finite};
+use crate::error::{GeometryError, finite, positive};
 use crate::normalized;
 
 /// An indexed triangle mesh. Every index is in range, every position finite, every normal of unit length.
@@ -84,14 +84,17 @@ impl TriangleMesh {
 
     /// The mesh moved and scaled alike along all axes so that its bounding box is centred at `center` and its farthest
     /// vertex lies `radius` from there.
-    #[must_use]
-    pub fn fitted(&self, center: Vec3, radius: f32) -> Self {
+    ///
+    /// # Errors
+    /// `radius` and the mesh's own extent must be greater than 0, and the result finite.
+    pub fn fitted(&self, center: Vec3, radius: f32) -> Result<Self, GeometryError> {
+        positive("radius", radius)?;
         let (min, max) = self.bounds();
         let middle = min + 0.5 * (max - min);
         let reach = self.positions.iter().map(|p| (p - middle).length()).fold(0.0, f32::max);
-        let scale = if reach > 0.0 { radius / reach } else { 1.0 };
+        let scale = radius / positive("the mesh's extent", reach)?;
         let positions = self.positions.iter().map(|p| center + (p - middle) * scale).collect();
-        Self { positions, normals: self.normals.clone(), triangles: self.triangles.clone() }
+        Self::new(positions, self.normals.clone(), self.triangles.clone())
     }
 }
 
@@ -131,8 +134,11 @@ mod tests {
     #[test]
     fn fitted_fills_the_sphere() {
         let (positions, triangles) = corner();
-        let mesh = TriangleMesh::new(positions, vec![], triangles).unwrap().fitted(Vec3::ONE, 2.0);
+        let mesh = TriangleMesh::new(positions, vec![], triangles).unwrap().fitted(Vec3::ONE, 2.0).unwrap();
         let far = mesh.positions().iter().map(|p| (p - Vec3::ONE).length()).fold(0.0, f32::max);
         assert!((far - 2.0).abs() < 1e-6);
+        let point = TriangleMesh::new(vec![Vec3::ONE; 3], vec![], vec![[0, 1, 2]]).unwrap();
+        assert!(point.fitted(Vec3::ZERO, 1.0).is_err());
+        assert!(mesh.fitted(Vec3::NAN, 1.0).is_err() && mesh.fitted(Vec3::ONE, f32::INFINITY).is_err());
     }
 }

@@ -33,11 +33,10 @@ pub fn image_error(
     test: &Image<[u8; 4]>,
     mask: &Image<bool>,
 ) -> Result<ImageError, GeometryError> {
-    let expected = reference.texels().len();
-    for (what, size) in [("test image", (test.width(), test.height())), ("mask", (mask.width(), mask.height()))] {
-        if size != (reference.width(), reference.height()) {
-            let len = size.0 as usize * size.1 as usize;
-            return Err(GeometryError::Length { what, len, expected });
+    let want = [reference.width(), reference.height()];
+    for (what, have) in [("test image", [test.width(), test.height()]), ("mask", [mask.width(), mask.height()])] {
+        if have != want {
+            return Err(GeometryError::Size { what, have, want });
         }
     }
     let (mut pixels, mut sum, mut max_abs) = (0usize, 0u64, 0u8);

@@ -18,7 +18,7 @@ pub struct Pinhole {
 }
 
 impl Pinhole {
-    /// A camera at `eye` that looks at `target` with +Y up (or +X up, if it looks along Y).
+    /// A camera at `eye` that looks at `target` with +Y up, or +X up if it looks straight along ±Y.
     ///
     /// `fov_y` is the vertical field of view in radians, `width × height` the image in pixels.
     ///
@@ -27,10 +27,10 @@ impl Pinhole {
     pub fn look_at(eye: Vec3, target: Vec3, fov_y: f32, width: u32, height: u32) -> Result<Self, GeometryError> {
         let distance = (target - eye).length();
         let forward = normalized(target - eye)
-            .filter(|_| eye.is_finite())
             .ok_or(GeometryError::NotPositive { what: "distance from eye to target", value: distance })?;
-        let right = normalized(forward.cross(Vec3::Y)).unwrap_or(Vec3::Z);
+        let right = normalized(forward.cross(Vec3::Y)).unwrap_or(Vec3::Z * -forward.y.signum());
         let tan_half_y = positive("tangent of half the field of view", libm::tanf(0.5 * fov_y))?;
+        positive("what the field of view leaves of a half circle", core::f32::consts::PI - fov_y)?;
         if width == 0 || height == 0 {
             return Err(GeometryError::ZeroCount { what: "image size" });
         }
@@ -64,16 +64,26 @@ impl Pinhole {
         Ray { origin: self.eye, direction: self.forward + dx * self.right + dy * self.up }
     }
 
-    /// The matrix from cell space to clip space: x right, y up, depth `1 − near/z` in 0 … 1 without a far plane.
+    /// The matrix from cell space to clip space: x right, y up, depth `near/z` falling from 1 at the near plane to 0 at
+    /// infinity ("reversed z"), which spends the precision of floats evenly over the distance.
     #[must_use]
     pub fn clip_from_cell(&self, near: f32) -> Mat4 {
         let sy = 1.0 / self.tan_half_y;
         let sx = sy * self.height as f32 / self.width as f32;
         let row = |axis: Vec3, scale: f32| (axis * scale).extend(-self.eye.dot(axis) * scale);
         let w = row(self.forward, 1.0);
-        let z = w - Vec4::new(0.0, 0.0, 0.0, near);
+        let z = Vec4::new(0.0, 0.0, 0.0, near);
         Mat4::from_cols(row(self.right, sx), row(self.up, sy), z, w).transpose()
     }
+}
+
+/// A near plane for drawing what lies in a box: a thousandth of the distance from `eye` to the box's far side.
+///
+/// Nearer parts are clipped; a smaller share would cost nothing in depth but let an eye inside the mesh see its inside.
+#[must_use]
+pub fn near_plane(eye: Vec3, (min, max): (Vec3, Vec3)) -> f32 {
+    let reach = (0.5 * (min + max) - eye).length() + 0.5 * (max - min).length();
+    (1e-3 * reach).max(f32::MIN_POSITIVE)
 }
 
 #[cfg(test)]
@@ -85,9 +95,20 @@ mod tests {
     fn refuses_what_cannot_look() {
         assert!(Pinhole::look_at(Vec3::ONE, Vec3::ONE, 1.0, 4, 4).is_err());
         assert!(Pinhole::look_at(Vec3::ONE, Vec3::ZERO, 0.0, 4, 4).is_err());
+        assert!(Pinhole::look_at(Vec3::ONE, Vec3::ZERO, 40.0, 4, 4).is_err());
         assert!(Pinhole::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0, 4).is_err());
         assert!(Pinhole::look_at(Vec3::ZERO, Vec3::Y, 1.0, 4, 4).is_ok());
         assert!(Pinhole::look_at(Vec3::ZERO, Vec3::NAN, 1.0, 4, 4).is_err());
+        assert!(Pinhole::look_at(Vec3::NAN, Vec3::ONE, 1.0, 4, 4).is_err());
+    }
+
+    #[test]
+    fn up_is_plus_x_straight_up_and_down() {
+        for target in [Vec3::Y, Vec3::NEG_Y] {
+            let camera = Pinhole::look_at(Vec3::ZERO, target, 1.0, 4, 4).unwrap();
+            assert!(camera.ray(2, 0).direction.x > 0.0);
+            assert_eq!(camera.ray(2, 0).direction.y, target.y);
+        }
     }
 
     proptest! {

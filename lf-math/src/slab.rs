@@ -45,7 +45,7 @@ impl Slab {
     /// plane to the focal plane (metres), or `None` to focus at infinity.
     ///
     /// # Errors
-    /// `plane` must be finite, `focal_depth` finite and greater than 0.
+    /// `plane` must be finite, `focal_depth` finite, greater than 0 and not so small that the disparity overflows.
     pub fn new(
         face: Face,
         plane: f32,
@@ -57,7 +57,9 @@ impl Slab {
         if let Some(depth) = focal_depth {
             positive("focal depth", depth)?;
         }
-        Ok(Self { face, plane, st, uv, focal_depth })
+        let slab = Self { face, plane, st, uv, focal_depth };
+        finite("disparity", slab.disparity().max_element())?;
+        Ok(slab)
     }
 
     /// The face direction this slab serves.
@@ -93,7 +95,7 @@ impl Slab {
     /// The same slab with another focal plane.
     ///
     /// # Errors
-    /// `focal_depth` must be finite and greater than 0.
+    /// As [`Self::new`].
     pub fn with_focal_depth(self, focal_depth: Option<f32>) -> Result<Self, GeometryError> {
         Self::new(self.face, self.plane, self.st, self.uv, focal_depth)
     }
@@ -238,6 +240,7 @@ mod tests {
         assert!(Slab::new(Face::PosX, f32::NAN, s.st(), s.uv(), None).is_err());
         assert!(s.with_focal_depth(Some(0.0)).is_err());
         assert!(s.with_focal_depth(Some(f32::INFINITY)).is_err());
+        assert!(s.with_focal_depth(Some(1e-40)).is_err());
     }
 
     proptest! {

@@ -35,11 +35,13 @@ impl SlabTexels {
     /// # Errors
     /// If any of the four numbers differs.
     pub fn check(&self, slab: &Slab) -> Result<(), GeometryError> {
-        let sizes = [(self.cameras, slab.cameras()), (self.resolution, slab.resolution())];
-        for (have, want) in sizes.into_iter().flat_map(|(have, want)| have.into_iter().zip(want)) {
+        let sizes = [
+            ("camera grid of slab texels", self.cameras, slab.cameras()),
+            ("image of slab texels", self.resolution, slab.resolution()),
+        ];
+        for (what, have, want) in sizes {
             if have != want {
-                let (len, expected) = (have as usize, want as usize);
-                return Err(GeometryError::Length { what: "axis of slab texels", len, expected });
+                return Err(GeometryError::Size { what, have, want });
             }
         }
         Ok(())

@@ -69,7 +69,7 @@ fn bench(c: &mut Criterion) {
     group.throughput(Throughput::Elements(RAYS as u64));
     let distance = |o, d| tracer.distance(o, d).unwrap_or(0.0);
     group.bench_function("nearest hit", |b| {
-        b.iter(|| rays.iter().map(|&(o, d)| distance(black_box(o), d)).sum::<f32>())
+        b.iter(|| rays.iter().map(|&(o, d)| distance(black_box(o), d)).sum::<f32>());
     });
     group.bench_function("bare obvhs", |b| b.iter(|| rays.iter().map(|&(o, d)| bare(black_box(o), d)).sum::<f32>()));
     let radiance = |o, d| tracer.trace(o, d).radiance;

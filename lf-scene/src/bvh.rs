@@ -43,6 +43,12 @@ impl TriangleBvh {
         Self { bvh, triangles }
     }
 
+    /// Memory of nodes, indices and corners, bytes.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        let (nodes, indices) = (self.bvh.nodes.as_slice(), self.bvh.primitive_indices.as_slice());
+        size_of_val(nodes) + size_of_val(indices) + size_of_val(self.triangles.as_slice())
+    }
+
     /// The nearest hit; none for a direction that is zero or for numbers that are not finite.
     pub(crate) fn nearest(&self, origin: Vec3, direction: Vec3) -> Option<Hit> {
         let sheared = ShearedRay::new(origin, direction)?;

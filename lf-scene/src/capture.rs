@@ -24,8 +24,8 @@ pub struct Capture {
 
 /// How often each inverse depth was seen from the camera plane by the rays that pass through the cell.
 ///
-/// Bins are `1/z = i·4/(BINS·h)`, h being the cell's smallest half extent: fine enough that the next bin moves nothing by
-/// a texel, and up to a quarter of h. What is nearer, or behind the plane, only counts as being beyond an end.
+/// Bins are `1/z = i·4/(BINS·h)`, h being the cell's smallest half extent: up to a quarter of h, in steps that shift the
+/// paper's 128 texels by 0.01 texel per camera. What is nearer, or behind the plane, only counts as being beyond an end.
 #[derive(Debug, Clone)]
 struct Depths {
     bin: f64,
@@ -39,7 +39,7 @@ const BINS: usize = 4096;
 ///
 /// Each stored ray starts where it leaves the cell ([`LightFieldGeometry::capture_ray`]). A texel is the mean of
 /// `grid × grid` rays spread over its footprint in (u, v); 0 counts as 1. `progress` is told the number of camera images
-/// finished so far, of [`image_count`](Capture) in all, from any thread.
+/// finished so far, from any thread.
 ///
 /// Each slab's focal plane is put at `1 / median(1/z)`, z being the depth of what the rays through the cell meet: the
 /// disparity of least mean absolute error. (Chai et al. 2000 give the harmonic mean of the extremes, the minimax choice;

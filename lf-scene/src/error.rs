@@ -10,7 +10,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum SceneError {
     /// A glTF file could not be read.
-    #[error("cannot read the glTF scene {}: {source}", path.display())]
+    #[error("cannot read the glTF scene {}", path.display())]
     Gltf {
         /// The file.
         path: PathBuf,
@@ -18,7 +18,7 @@ pub enum SceneError {
         source: Box<gltf::Error>,
     },
     /// An OBJ file could not be read.
-    #[error("cannot read the OBJ mesh {}: {source}", path.display())]
+    #[error("cannot read the OBJ mesh {}", path.display())]
     Obj {
         /// The file.
         path: PathBuf,
@@ -32,7 +32,7 @@ pub enum SceneError {
         path: PathBuf,
     },
     /// A file whose numbers make no geometry.
-    #[error("{} holds broken geometry: {source}", path.display())]
+    #[error("{} holds broken geometry", path.display())]
     Broken {
         /// The file.
         path: PathBuf,
@@ -40,6 +40,6 @@ pub enum SceneError {
         source: GeometryError,
     },
     /// A scene without triangles, or with a vertex that is not finite.
-    #[error("the scene has no usable geometry: {0}")]
+    #[error(transparent)]
     Geometry(#[from] GeometryError),
 }

@@ -3,6 +3,7 @@
 use std::f32::consts::TAU;
 
 use glam::Vec3;
+use lf_math::{Cell, Ray};
 
 use crate::tracer::Tracer;
 
@@ -26,8 +27,21 @@ pub fn free_radius(tracer: &Tracer, point: Vec3) -> f32 {
     spiral(DIRECTIONS).filter_map(hit).fold((max - min).length(), f32::min)
 }
 
+/// Whether no surface is met inside a cell, along 256 directions spread evenly from its centre and towards its corners.
+#[must_use]
+pub fn is_free(tracer: &Tracer, cell: &Cell) -> bool {
+    let corners = (0..8u32).map(|i| Vec3::new((i & 1) as f32, ((i >> 1) & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0);
+    let center = cell.center().as_vec3();
+    spiral(DIRECTIONS).chain(corners.map(|corner| corner * cell.half_extent())).all(|direction| {
+        let exit = cell.exit(&Ray { origin: Vec3::ZERO, direction }).unwrap_or(0.0);
+        tracer.distance(center, direction).is_none_or(|met| met > exit)
+    })
+}
+
 /// The point with most room among places that can be seen from `eye`, looking along `forward` (any length), or all
-/// around if `forward` is `None`. `None` if there is no room at all, as when `eye` lies in a surface.
+/// around if `forward` is `None`. Places outside the scene's bounding box do not count, and none has more room than to
+/// its sides, so that an open scene does not send the cell into the sky. `None` if there is no room at all, as when
+/// `eye` lies in a surface.
 #[must_use]
 pub fn find_free_space(tracer: &Tracer, eye: Vec3, forward: Option<Vec3>) -> Option<FreeSpace> {
     let (min, max) = tracer.scene().bounds();
@@ -39,7 +53,10 @@ pub fn find_free_space(tracer: &Tracer, eye: Vec3, forward: Option<Vec3>) -> Opt
         let free = tracer.distance(eye, direction).unwrap_or(reach).min(reach);
         (1..8).map(move |step| eye + direction * free * (step as f32 / 8.0))
     });
-    let room = |center: Vec3| FreeSpace { center, radius: free_radius(tracer, center) };
+    let room = |center: Vec3| {
+        let to_bounds = (center - min).min(max - center).min_element();
+        FreeSpace { center, radius: if to_bounds > 0.0 { to_bounds.min(free_radius(tracer, center)) } else { 0.0 } }
+    };
     candidates.map(room).filter(|space| space.radius > 0.0).max_by(|a, b| a.radius.total_cmp(&b.radius))
 }
 
@@ -57,7 +74,8 @@ fn spiral(count: u32) -> impl Iterator<Item = Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::museum;
+    use crate::{Lighting, Material, SceneBuilder, museum};
+    use glam::Vec2;
 
     #[test]
     fn the_museum_has_room_near_its_middle() {
@@ -65,6 +83,26 @@ mod tests {
         let found = find_free_space(&tracer, Vec3::new(0.0, 1.6, 3.5), Some(Vec3::NEG_Z)).expect("room");
         assert!(found.radius > 1.0, "{found:?}");
         assert!((found.radius - free_radius(&tracer, found.center)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn open_scenes_keep_the_cell_near_their_things() {
+        let mut builder = SceneBuilder::default();
+        let grey = builder.material(Material::diffuse(Vec3::splat(0.5)));
+        builder.parallelogram(Vec3::ZERO, Vec3::Z * 10.0, Vec3::X * 10.0, Vec2::ONE, grey);
+        builder.cuboid(Vec3::new(1.0, 0.0, 1.0), Vec3::new(2.0, 3.0, 2.0), grey);
+        let lighting = Lighting { lights: vec![], ambient: Vec3::ONE, sky: Vec3::ONE };
+        let tracer = Tracer::new(builder.build("open", lighting).unwrap());
+        let found = find_free_space(&tracer, Vec3::new(5.0, 1.5, 5.0), None).expect("room");
+        assert!(found.center.y + found.radius <= 3.0 && found.radius > 0.5, "{found:?}");
+    }
+
+    #[test]
+    fn a_thing_inside_the_cell_is_noticed() {
+        let tracer = Tracer::new(museum::scene());
+        assert!(is_free(&tracer, &museum::cell()));
+        let large = Cell::cube(museum::cell().center(), 2.9).unwrap();
+        assert!(!is_free(&tracer, &large));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! A [`Scene`] is triangles with textured diffuse or emissive materials and simple lights, made in code
 //! ([`museum`]) or read from glTF ([`import_gltf`]). A [`Tracer`] answers one ray at a time. From it come the slabs
-//! ([`capture_slabs`]), the environment map ([`capture_cube`]) and the reference pictures ([`reference`]).
+//! ([`capture_slabs`]), the environment map ([`capture_cube`]) and the reference pictures ([`mod@reference`]).
 //! [`reflectors`] holds the objects to look at.
 //!
 //! Shading is direct light only: point lights and a sun with hard shadows over an ambient term. World space is glTF's:
@@ -25,9 +25,13 @@ mod tracer;
 
 pub use capture::{Capture, capture_cube, capture_slabs};
 pub use error::SceneError;
-pub use free_space::{FreeSpace, find_free_space, free_radius};
+pub use free_space::{FreeSpace, find_free_space, free_radius, is_free};
 pub use import::{Imported, import_gltf, import_obj};
 pub use light::{Light, Lighting};
 pub use material::{Material, Pattern, Surface, Texture};
 pub use scene::{Scene, SceneBuilder, Vertex};
 pub use tracer::{Traced, Tracer};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

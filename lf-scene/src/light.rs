@@ -1,23 +1,26 @@
 //! Direct light.
+//!
+//! Amounts of light are given as the radiance that a white diffuse surface facing it sends back, which is the radiometric
+//! irradiance divided by π.
 
 use glam::Vec3;
 
 /// One light, world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
-    /// Shines from a point; irradiance falls with the square of the distance.
+    /// Shines from a point; falls with the square of the distance.
     Point {
         /// Where it is, metres.
         position: Vec3,
-        /// Radiant intensity, linear RGB (irradiance at 1 m).
+        /// What a white surface at 1 m sends back, linear RGB.
         intensity: Vec3,
     },
     /// Shines from infinitely far away.
     Sun {
         /// Unit vector from the scene towards the light.
         towards: Vec3,
-        /// Irradiance on a surface facing it, linear RGB.
-        irradiance: Vec3,
+        /// What a white surface facing it sends back, linear RGB.
+        strength: Vec3,
     },
 }
 
@@ -33,11 +36,12 @@ pub struct Lighting {
 }
 
 impl Light {
-    /// Direction to the light from a point (unit), distance, and irradiance at normal incidence; `None` at the light itself.
+    /// Direction to the light from a point (unit), distance, and what a white surface facing the light there sends back;
+    /// `None` at the light itself.
     #[must_use]
     pub fn seen_from(&self, point: Vec3) -> Option<(Vec3, f32, Vec3)> {
         match *self {
-            Self::Sun { towards, irradiance } => Some((towards, f32::INFINITY, irradiance)),
+            Self::Sun { towards, strength } => Some((towards, f32::INFINITY, strength)),
             Self::Point { position, intensity } => {
                 let to = position - point;
                 let distance = to.length();

@@ -70,6 +70,14 @@ impl Material {
 }
 
 impl Surface {
+    /// Memory of the texture, bytes; 0 without one.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        match self {
+            Self::Textured(texture, _) => size_of_val(texture.image.texels()),
+            Self::Uniform(_) | Self::Procedural(_) => 0,
+        }
+    }
+
     /// Base colour at a texture coordinate, linear RGB.
     #[must_use]
     pub fn color(&self, uv: Vec2) -> Vec3 {

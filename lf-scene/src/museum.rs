@@ -10,7 +10,6 @@ use lf_math::Cell;
 
 use crate::light::{Light, Lighting};
 use crate::material::{Material, Pattern};
-use crate::reflectors;
 use crate::scene::{Scene, SceneBuilder};
 
 /// Half the room's width and depth, metres.
@@ -138,8 +137,7 @@ fn near_objects(builder: &mut SceneBuilder) {
         if i == 1 {
             builder.cuboid(place + Vec3::new(-0.15, 1.1, -0.15), place + Vec3::new(0.15, 1.4, 0.15), paint);
         } else {
-            let ball = reflectors::sphere(2).fitted(place + Vec3::Y * 1.27, 0.17);
-            builder.mesh(&ball, paint);
+            builder.ball(place + Vec3::Y * 1.27, 0.17, paint);
         }
     }
 }
@@ -152,6 +150,7 @@ mod tests {
     #[test]
     fn the_room_is_closed_and_the_cell_is_free() {
         let tracer = Tracer::new(scene());
+        assert!(crate::is_free(&tracer, &cell()));
         let center = cell().center().as_vec3();
         for i in 0..10_000u32 {
             // A spiral of directions that covers the sphere evenly.
@@ -160,8 +159,6 @@ mod tests {
             let r = (1.0 - y * y).sqrt();
             let traced = tracer.trace(center, Vec3::new(r * angle.cos(), y, r * angle.sin()));
             assert!(traced.distance.is_finite(), "a ray leaves the room");
-            // At least the cell's half extent along some axis, and in fact its corners, must be free.
-            assert!(traced.distance > 0.55, "something stands in the cell at {}", traced.distance);
             assert!(traced.radiance.is_finite() && traced.radiance.min_element() > 0.0);
         }
     }

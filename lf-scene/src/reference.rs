@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn a_fine_sphere_reflects_like_the_exact_one() {
-        let mirror = Mirror::new(reflectors::sphere(6).fitted(Vec3::ZERO, 0.4));
+        let mirror = Mirror::new(reflectors::sphere(6).fitted(Vec3::ZERO, 0.4).unwrap());
         let mut worst = 0.0f32;
         for i in 0..2000 {
             let angle = 2.399_963_2 * i as f32;

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::Vec3;
 use lf_math::TriangleMesh;
 
-/// Newell's 32 bicubic Bézier patches of the teapot, as published in 1975 and handed round since.
+/// Newell's bicubic Bézier patches of the teapot, 32 with the bottom, in the form in which they are handed round.
 const TEAPOT: &str = include_str!("../data/newell-teapot.txt");
 
 /// A sphere of radius 1 as a subdivided icosahedron of 20·4ⁿ triangles, with exact normals.

@@ -3,10 +3,11 @@
 use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
-use lf_math::{GeometryError, TriangleMesh};
+use lf_math::GeometryError;
 
 use crate::light::Lighting;
 use crate::material::Material;
+use crate::reflectors;
 
 /// A corner of a triangle, world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +20,7 @@ pub struct Vertex {
     pub uv: Vec2,
 }
 
-/// Triangles with materials under light. Not empty, all positions finite.
+/// Triangles with materials under light. Not empty, all positions within ±1e12 m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     name: String,
@@ -57,6 +58,13 @@ impl Scene {
         &self.materials[self.triangles[triangle].1 as usize]
     }
 
+    /// Memory of triangles and textures, bytes; a texture that several materials share is counted for each.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        let textures: usize = self.materials.iter().map(|material| material.surface.memory_bytes()).sum();
+        size_of_val(self.triangles.as_slice()) + textures
+    }
+
     /// The light.
     #[must_use]
     pub fn lighting(&self) -> &Lighting {
@@ -68,6 +76,20 @@ impl Scene {
     pub fn bounds(&self) -> (Vec3, Vec3) {
         bounds(&self.triangles)
     }
+}
+
+/// Refuses positions that the hierarchy cannot calculate with: products of three coordinates have to stay finite in `f32`.
+pub(crate) fn check_positions(positions: impl Iterator<Item = Vec3>) -> Result<(), GeometryError> {
+    const MAX: f32 = 1e12;
+    for value in positions.flat_map(|p| p.to_array()) {
+        if !value.is_finite() {
+            return Err(GeometryError::NotFinite { what: "vertex position", value });
+        }
+        if value.abs() > MAX {
+            return Err(GeometryError::TooLarge { what: "vertex position", value, max: MAX });
+        }
+    }
+    Ok(())
 }
 
 fn bounds(triangles: &[([Vertex; 3], u32)]) -> (Vec3, Vec3) {
@@ -136,13 +158,13 @@ impl SceneBuilder {
         }
     }
 
-    /// Adds a mesh given in world space, smoothly shaded.
-    pub fn mesh(&mut self, mesh: &TriangleMesh, material: u32) {
+    /// Adds a ball of 320 triangles, smoothly shaded.
+    pub fn ball(&mut self, center: Vec3, radius: f32, material: u32) {
+        let mesh = reflectors::sphere(2);
         for triangle in mesh.triangles() {
-            let corners = triangle.map(|i| Vertex {
-                position: mesh.positions()[i as usize],
-                normal: mesh.normals()[i as usize],
-                uv: Vec2::ZERO,
+            let corners = triangle.map(|i| {
+                let normal = mesh.normals()[i as usize];
+                Vertex { position: center + normal * radius, normal, uv: Vec2::ZERO }
             });
             self.triangle(corners, material);
         }
@@ -151,7 +173,7 @@ impl SceneBuilder {
     /// The finished scene.
     ///
     /// # Errors
-    /// There must be at least one triangle, all positions must be finite and all material numbers exist.
+    /// There must be at least one triangle, all positions must be within ±1e12 m and all material numbers exist.
     pub fn build(self, name: &str, lighting: Lighting) -> Result<Scene, GeometryError> {
         if self.triangles.is_empty() {
             return Err(GeometryError::ZeroCount { what: "triangle count" });
@@ -160,9 +182,7 @@ impl SceneBuilder {
             if *material as usize >= self.materials.len() {
                 return Err(GeometryError::VertexIndex { index: *material, vertices: self.materials.len() });
             }
-            if let Some(bad) = corners.iter().find(|v| !v.position.is_finite()) {
-                return Err(GeometryError::NotFinite { what: "vertex position", value: bad.position.max_element() });
-            }
+            check_positions(corners.iter().map(|v| v.position))?;
         }
         let name = name.to_owned();
         Ok(Scene { name, triangles: self.triangles, materials: self.materials, lighting })

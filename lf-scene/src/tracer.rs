@@ -39,6 +39,12 @@ impl Tracer {
         &self.scene
     }
 
+    /// Memory of the triangles, their hierarchy and the textures, bytes.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        self.scene.memory_bytes() + self.bvh.memory_bytes()
+    }
+
     /// Ray parameter of the nearest hit, if any. The direction may have any length; a direction that is zero or not
     /// finite, or an origin that is not finite, hits nothing.
     #[must_use]
@@ -67,19 +73,19 @@ impl Tracer {
         let material = self.scene.material(hit.triangle);
         let base = material.surface.color(Vec2::new(uv.x, uv.y));
         let point = origin + direction * hit.t;
-        material.emission + base * self.irradiance(point, geometric * self.offset, normal)
+        material.emission + base * self.sent_back(point, geometric * self.offset, normal)
     }
 
     /// Light that a white diffuse surface sends back: ambient, and what each visible light adds. Shadow rays start
     /// `lift` above the point.
-    fn irradiance(&self, point: Vec3, lift: Vec3, normal: Vec3) -> Vec3 {
+    fn sent_back(&self, point: Vec3, lift: Vec3, normal: Vec3) -> Vec3 {
         let lighting = self.scene.lighting();
         let mut sum = lighting.ambient_on(normal);
         for light in &lighting.lights {
-            let Some((towards, distance, irradiance)) = light.seen_from(point) else { continue };
+            let Some((towards, distance, strength)) = light.seen_from(point) else { continue };
             let cosine = normal.dot(towards);
             if cosine > 0.0 && !self.bvh.occluded(point + lift, towards, distance) {
-                sum += irradiance * cosine;
+                sum += strength * cosine;
             }
         }
         sum
@@ -115,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_box_casts_a_shadow_of_the_sun() {
-        let tracer = lit_floor(vec![Light::Sun { towards: Vec3::Y, irradiance: Vec3::ONE }]);
+        let tracer = lit_floor(vec![Light::Sun { towards: Vec3::Y, strength: Vec3::ONE }]);
         let below = |x: f32| tracer.trace(Vec3::new(x, 0.5, 0.0), Vec3::NEG_Y).radiance.x;
         assert_eq!((below(3.9), below(5.0), below(6.1)), (1.0, 0.0, 1.0));
     }

@@ -16,17 +16,37 @@ fn cameras() -> Vec<Pinhole> {
 
 fn mirrors() -> [(&'static str, TriangleMesh); 2] {
     [
-        ("sphere", reflectors::sphere(5).fitted(Vec3::ZERO, 0.45)),
-        ("teapot", reflectors::teapot(10).fitted(Vec3::ZERO, 0.48)),
+        ("sphere", reflectors::sphere(5).fitted(Vec3::ZERO, 0.45).expect("fits")),
+        ("teapot", reflectors::teapot(10).fitted(Vec3::ZERO, 0.48).expect("fits")),
     ]
 }
 
-/// The share of pixels whose channels all agree within 2/255, and the largest difference.
-fn agreement(a: &Image<[u8; 4]>, b: &Image<[u8; 4]>) -> (f64, u8) {
-    let difference = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0);
-    let differences: Vec<_> = a.texels().iter().zip(b.texels()).map(difference).collect();
-    let close = differences.iter().filter(|&&d| d <= 2).count();
-    (close as f64 / differences.len() as f64, differences.into_iter().max().unwrap_or(0))
+/// How two pictures of a mirror agree.
+struct Agreement {
+    /// Share of all pixels whose channels agree within 2/255.
+    all: f64,
+    /// The same share of the pixels that the mirror covers in either picture.
+    covered: f64,
+    /// Pixels that only one picture covers.
+    outline: usize,
+    /// Largest difference of a channel where both cover.
+    worst: u8,
+}
+
+fn agreement(a: &Image<[u8; 4]>, b: &Image<[u8; 4]>) -> Agreement {
+    let (mut apart, mut covered, mut outline, mut worst) = (0usize, 0usize, 0, 0);
+    for (a, b) in a.texels().iter().zip(b.texels()).filter(|(a, b)| a[3] != 0 || b[3] != 0) {
+        let difference = (0..4).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0);
+        covered += 1;
+        apart += usize::from(difference > 2);
+        if a[3] == b[3] {
+            worst = worst.max(difference);
+        } else {
+            outline += 1;
+        }
+    }
+    let share = |of: usize| 1.0 - apart as f64 / of as f64;
+    Agreement { all: share(a.texels().len()), covered: share(covered), outline, worst }
 }
 
 fn compare(gpu: &Gpu, what: &str, pass: &ReflectionPass, twin: &impl Environment) {
@@ -34,14 +54,20 @@ fn compare(gpu: &Gpu, what: &str, pass: &ReflectionPass, twin: &impl Environment
         let device_mesh = MirrorMesh::new(gpu, &mesh).expect("uploads");
         let target = Target::new(gpu, SIZE, SIZE).expect("a target");
         for (eye, camera) in cameras().iter().enumerate() {
-            pass.draw(gpu, &target, &device_mesh, camera);
+            pass.draw(gpu, &target, &device_mesh, camera).expect("draws");
             let drawn = target.read(gpu).expect("reads");
             let expected = reflect_frame(&GBuffer::rasterize(&mesh, camera), twin);
-            let covered = drawn.texels().iter().filter(|texel| texel[3] == 255).count();
-            assert!(covered > 30_000, "{name} covers {covered} pixels");
-            let (share, worst) = agreement(&drawn, &expected);
-            println!("{what}, {name}, eye {eye}: {:.4} % within 2/255, worst {worst}", 100.0 * share);
-            assert!(share >= 0.999, "{what}, {name}, eye {eye}: only {share} within 2/255");
+            let found = agreement(&drawn, &expected);
+            println!(
+                "{what}, {name}, eye {eye}: within 2/255 {:.4} % of all pixels, {:.4} % of the mirror's; worst {}, {} on the outline",
+                100.0 * found.all,
+                100.0 * found.covered,
+                found.worst,
+                found.outline
+            );
+            assert!(found.all >= 0.999, "{what}, {name}, eye {eye}");
+            // What is left lies on creases, where neighbouring rays part, and on the outline.
+            assert!(found.covered >= 0.997 && found.outline <= 40, "{what}, {name}, eye {eye}");
         }
     }
 }
@@ -50,10 +76,10 @@ fn compare(gpu: &Gpu, what: &str, pass: &ReflectionPass, twin: &impl Environment
 fn slabs_agree_within_two_steps_on_999_of_1000_pixels() {
     let (gpu, tracer) = (gpu(), museum());
     let field = packed(&capture(&tracer, 10, 48));
-    let twin = SlabField::new(field.geometry().clone(), field.decode().expect("decodes")).expect("a field");
+    let twin = SlabField::new(field.geometry().clone(), field.decode(1 << 30).expect("decodes")).expect("a field");
     for storage in Storage::ALL {
         let texture = SlabTexture::with_storage(&gpu, &field, storage).expect("uploads");
-        let pass = ReflectionPass::slabs(&gpu, &field, &texture).expect("a pass");
+        let pass = ReflectionPass::slabs(&gpu, &texture).expect("a pass");
         compare(&gpu, &storage.to_string(), &pass, &twin);
     }
 }

@@ -7,7 +7,7 @@ use crate::vulkan;
 
 /// Runs every check in order and stops at the first that fails.
 pub(crate) fn run(long: bool) -> Result<(), String> {
-    let crates = library_crates(&workspace_root())?;
+    let crates = packages(&workspace_root())?;
     let (before, after) = (checks(), tests(&crates, long));
     let mut runner = Runner::new(before.len() + 1 + after.len());
     for (name, line) in before {
@@ -32,19 +32,19 @@ fn checks() -> Vec<(String, CommandLine)> {
     ]
 }
 
-/// What runs code. A crate by itself may get fewer features of its dependencies than in the whole workspace, so each
-/// is compiled alone too.
+/// What runs code: the tests of each crate alone, since a crate by itself may get fewer features of its dependencies than
+/// in the whole workspace.
 fn tests(crates: &[String], long: bool) -> Vec<(String, CommandLine)> {
-    let mut all = CommandLine::new("cargo test --workspace --locked");
-    if long {
-        all = all.with("LFSLAB_LONG", "1");
+    let mut steps = Vec::new();
+    for name in crates {
+        let mut line = CommandLine::new(&format!("cargo test -p {name} --locked"));
+        if long {
+            line = line.with("LFSLAB_LONG", "1");
+        }
+        steps.push((format!("tests of {name}"), line));
     }
     let no_std = CommandLine::new("cargo test -p lf-math --no-default-features --locked");
-    let mut steps = vec![("all tests".to_owned(), all), ("lf-math without std".to_owned(), no_std)];
-    for name in crates {
-        let alone = CommandLine::new(&format!("cargo check -p {name} --all-targets --locked"));
-        steps.push((format!("{name} alone"), alone));
-    }
+    steps.push(("tests of lf-math without std".to_owned(), no_std));
     if long {
         let benches = "cargo bench -p lf-compress -p lf-ibr -p lf-scene --benches --locked -- --test";
         steps.push(("each benchmark once".to_owned(), CommandLine::new(benches)));
@@ -52,12 +52,12 @@ fn tests(crates: &[String], long: bool) -> Vec<(String, CommandLine)> {
     steps
 }
 
-/// The workspace's libraries: folders `lf-*` with a `src/lib.rs`, by name.
-fn library_crates(root: &Path) -> Result<Vec<String>, String> {
+/// The workspace's packages: the folders with a `Cargo.toml`; a folder that is not called as its package is renamed.
+fn packages(root: &Path) -> Result<Vec<String>, String> {
     let entries = std::fs::read_dir(root).map_err(|error| format!("cannot list {}: {error}", root.display()))?;
-    let folders = entries.filter_map(Result::ok).filter(|entry| entry.path().join("src/lib.rs").is_file());
-    let mut names: Vec<String> = folders.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
-    names.retain(|name| name.starts_with("lf-"));
+    let folders = entries.filter_map(Result::ok).filter(|entry| entry.path().join("Cargo.toml").is_file());
+    let names = folders.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = names.map(|name| if name == "tests" { "lf-tests".to_owned() } else { name }).collect();
     names.sort_unstable();
     Ok(names)
 }
@@ -67,19 +67,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_library_is_compiled_alone() {
-        let crates = library_crates(&workspace_root()).unwrap();
-        for name in ["lf-math", "lf-report"] {
+    fn every_package_is_tested_alone() {
+        let crates = packages(&workspace_root()).unwrap();
+        for name in ["lf-cli", "lf-math", "lf-report", "lf-tests", "xtask"] {
             assert!(crates.iter().any(|found| found == name), "{crates:?}");
         }
-        assert_eq!(tests(&crates, false).len(), crates.len() + 2);
-        assert_eq!(tests(&crates, true).len(), crates.len() + 3);
+        assert_eq!(tests(&crates, false).len(), crates.len() + 1);
+        assert_eq!(tests(&crates, true).len(), crates.len() + 2);
     }
 
     #[test]
-    fn long_sets_its_variable_for_all_tests_only() {
+    fn long_sets_its_variable_for_the_tests() {
         let lines: Vec<String> = tests(&["lf-math".to_owned()], true).iter().map(|(_, l)| l.shell_line()).collect();
-        assert_eq!(lines[0], "LFSLAB_LONG='1' cargo test --workspace --locked");
-        assert!(lines[1..].iter().all(|line| !line.contains("LFSLAB_LONG")), "{lines:?}");
+        assert_eq!(lines[0], "LFSLAB_LONG='1' cargo test -p lf-math --locked");
     }
 }

@@ -32,7 +32,8 @@ pub(crate) fn prepare() -> Result<Vec<(&'static str, OsString)>, String> {
         }
     };
     print!("{adapters}");
-    if has_hardware(&adapters) || std::env::var_os(DRIVER_FILES).is_some() {
+    let chosen = [DRIVER_FILES, "VK_ICD_FILENAMES"].iter().any(|name| std::env::var_os(name).is_some());
+    if has_hardware(&adapters) || chosen {
         return Ok(Vec::new());
     }
     // Software only: name the driver, so that the results do not hang on what else is installed.

@@ -131,11 +131,11 @@ pub(crate) fn refusal(bytes: &[u8]) -> FormatError {
     }
 }
 
-/// Asserts that a file is refused as malformed for breaking one clause.
+/// Asserts that a file is refused as malformed for breaking one clause at one byte.
 #[track_caller]
-pub(crate) fn assert_breaks(bytes: &[u8], expected: &str) {
+pub(crate) fn assert_breaks(bytes: &[u8], expected: &str, at: usize) {
     match refusal(bytes) {
-        FormatError::Malformed { clause, .. } if clause == expected => {}
-        other => panic!("expected a break of {expected}, got: {other}"),
+        FormatError::Malformed { clause, offset, .. } if (clause, offset) == (expected, at as u64) => {}
+        other => panic!("expected a break of {expected} at byte {at}, got: {other}"),
     }
 }

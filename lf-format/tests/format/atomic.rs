@@ -73,6 +73,32 @@ fn permissions_are_those_of_any_new_file() {
     assert_eq!(mode(&atomic), mode(&plain));
 }
 
+/// Writes nothing: the path must be refused before.
+#[cfg(unix)]
+#[track_caller]
+fn assert_not_replaced(path: &Path) {
+    let error = write_atomic(path, |_| panic!("nothing may be written")).unwrap_err();
+    assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
+    assert!(error.to_string().contains("not a regular file"), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_not_a_regular_file_is_not_replaced() {
+    use std::os::unix::fs::FileTypeExt;
+    let folder = tempfile::tempdir().unwrap();
+    let [pipe, link, inner] = ["pipe", "link", "folder"].map(|name| folder.path().join(name));
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    std::os::unix::fs::symlink(&pipe, &link).unwrap();
+    std::fs::create_dir(&inner).unwrap();
+    for path in [&pipe, &link, &inner] {
+        assert_not_replaced(path);
+    }
+    assert!(std::fs::symlink_metadata(&pipe).unwrap().file_type().is_fifo());
+    assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink() && inner.is_dir());
+    assert_eq!(names(folder.path()).len(), 3);
+}
+
 #[cfg(unix)]
 #[test]
 fn a_symbolic_link_is_replaced_not_followed() {

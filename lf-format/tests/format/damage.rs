@@ -1,13 +1,31 @@
 //! Damaged, foreign and hostile files.
 
-use lf_format::{FormatError, Limits, Metadata, Packing, SlabTiling, TexelEncoding, Writer};
+use lf_format::{ChunkEntry, Container, FormatError, Limits, Metadata, Packing, SlabTiling, TexelEncoding, Writer};
 use lf_math::{Cell, LightFieldGeometry, PlanePlacement};
 use proptest::prelude::*;
 
-use crate::assemble::{File, assert_breaks, parse, refusal, reseal};
+use crate::assemble::{Chunk, File, assert_breaks, parse, refusal, reseal};
 
-/// A file with every kind of chunk and of padding, a few kilobytes long.
+/// A file with every kind of chunk and of padding, one of a kind that no reader knows among them, a few kilobytes long.
 fn small_file() -> Vec<u8> {
+    let bytes = written_file();
+    let read = parse(&bytes).unwrap();
+    let mut chunks: Vec<Chunk> = read.chunks().map(|entry| chunk(&bytes, entry)).collect();
+    chunks.insert(2, Chunk { packing: 9, slab: 5, raw_len: 4, ..Chunk::new(b"note", 2, vec![1; 70]) });
+    File { version: read.version(), chunks }.to_bytes()
+}
+
+/// A chunk of a file as the assembler wants it.
+fn chunk(file: &[u8], entry: &ChunkEntry) -> Chunk {
+    let payload = file[entry.offset as usize..][..entry.stored_len as usize].to_vec();
+    let flags = u16::from(entry.critical) + 2 * u16::from(entry.safe_to_copy);
+    let packing = u8::from(entry.packing == Packing::Zstd);
+    let (slab, tile, raw_len) = (entry.slab, entry.tile, entry.raw_len);
+    Chunk { packing, slab, tile, raw_len, ..Chunk::new(&entry.tag.bytes(), flags, payload) }
+}
+
+/// Two slabs in both encodings, raw and packed tiles, and metadata.
+fn written_file() -> Vec<u8> {
     let cell = Cell::cube(glam::DVec3::new(1.0, 2.0, 3.0), 1.0).unwrap();
     let field = LightFieldGeometry::around(cell, PlanePlacement::CellFaces, 2, 3).unwrap();
     let field = LightFieldGeometry::new(cell, field.slabs()[2..4].to_vec()).unwrap();
@@ -50,7 +68,7 @@ fn every_flipped_bit_is_refused() {
 fn bytes_after_the_end_are_refused() {
     let mut file = small_file();
     file.push(0);
-    assert_breaks(&file, "§3.3");
+    assert_breaks(&file, "§3.3", file.len() - 1);
 }
 
 #[test]
@@ -83,11 +101,11 @@ fn text_mode_damage_is_recognised() {
     ];
     for start in starts {
         let file = [start, rest].concat();
-        assert_breaks(&file, "§3.1");
+        assert_breaks(&file, "§3.1", 0);
         assert!(refusal(&file).to_string().contains("text mode"));
     }
     // Cut off at the end-of-file character.
-    assert_breaks(&good[..10], "§3.3");
+    assert_breaks(&good[..10], "§3.3", 10);
 }
 
 #[test]
@@ -139,21 +157,44 @@ fn extreme_counts_in_the_geometry_are_refused() {
     }
 }
 
+/// A value is accepted at its limit, and refused with its name and size above it.
+#[track_caller]
+fn assert_limit(file: &[u8], name: &str, value: u64, set: impl Fn(&mut Limits, u64)) {
+    let parse_with = |limit| {
+        let mut limits = Limits::default();
+        set(&mut limits, limit);
+        Container::parse(file, &limits)
+    };
+    parse_with(value).unwrap();
+    match parse_with(value - 1).unwrap_err() {
+        FormatError::LimitExceeded { what, value: found, limit } => {
+            assert_eq!((what, found, limit), (name, value, value - 1));
+        }
+        other => panic!("expected the limit on the {name}, got: {other}"),
+    }
+}
+
 #[test]
 fn limits_are_kept() {
-    let bytes = small_file();
-    let tight = [
-        |limits: &mut Limits| limits.max_file_bytes = 100,
-        |limits: &mut Limits| limits.max_entries = 5,
-        |limits: &mut Limits| limits.max_metadata_bytes = 10,
-        |limits: &mut Limits| limits.max_raw_bytes = 287,
-        |limits: &mut Limits| limits.max_axis_count = 2,
-    ];
-    for tighten in tight {
-        let mut limits = Limits::default();
-        tighten(&mut limits);
-        let error = lf_format::Container::parse(&bytes, &limits).unwrap_err();
-        assert!(matches!(error, FormatError::LimitExceeded { .. }), "{error}");
+    let file = small_file();
+    assert_limit(&file, "file length", file.len() as u64, |limits, n| limits.max_file_bytes = n);
+    assert_limit(&file, "number of chunks", 7, |limits, n| limits.max_entries = n as u32);
+    // The number of entries, two lengths, `scene` and `two slabs`.
+    assert_limit(&file, "length of the metadata", 4 + 6 + 5 + 9, |limits, n| limits.max_metadata_bytes = n);
+    // Two tiles of 8×4 texels in BC1, two in RGBA8.
+    let raw = 2 * 16 + 2 * 128;
+    assert_limit(&file, "unpacked length of all tiles", raw, |limits, n| limits.max_raw_bytes = n);
+    assert_limit(&file, "number of samples along an axis", 3, |limits, n| limits.max_axis_count = n as u32);
+}
+
+#[test]
+fn the_limit_on_axes_holds_for_cameras_of_a_tile() {
+    for at in [100, 104] {
+        let mut file = File::smallest();
+        file.chunks[0].payload[at] = 5;
+        file.chunks[1] = Chunk::new(b"TILE", 1, vec![0; 5 * 8]);
+        let name = "number of cameras along a tile";
+        assert_limit(&file.to_bytes(), name, 5, |limits, n| limits.max_axis_count = n as u32);
     }
 }
 

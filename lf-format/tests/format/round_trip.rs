@@ -38,7 +38,7 @@ fn field() -> impl Strategy<Value = (LightFieldGeometry, Vec<SlabTiling>)> {
 }
 
 fn metadata() -> impl Strategy<Value = Metadata> {
-    vec(("[a-z0-9._-]{1,64}", "[^\0]{0,40}"), 0..5).prop_map(|pairs| {
+    vec(("[a-z0-9._-]{1,64}", "[^\x00-\x08\x0B-\x1F\x7F]{0,40}"), 0..5).prop_map(|pairs| {
         let mut metadata = Metadata::new();
         for (key, value) in pairs {
             metadata.insert(key, value).unwrap();
@@ -109,6 +109,26 @@ proptest! {
             let [width, height] = tiling.tile_size().map(u64::from);
             prop_assert_eq!(2 * tiling.raw_len(), width * height * per_texel_x2);
         }
+    }
+}
+
+/// §7.6 the other way round: every place of every tile holds the camera that the formulas of §7.1 and §7.2 give, or none.
+#[test]
+fn every_camera_has_its_place() {
+    let axis = |count| SampledAxis::new(0.0, 1.0, count).unwrap();
+    let slab = Slab::new(Face::NegY, 0.0, [axis(7), axis(5)], [axis(6), axis(9)], None).unwrap();
+    let tiling = SlabTiling::new(&slab, TexelEncoding::Bc1, [3, 2]).unwrap();
+    assert_eq!((tiling.cameras(), tiling.resolution(), tiling.tiles()), ([7, 5], [6, 9], [3, 3]));
+    let mut placed = 0;
+    for (tile, t, s) in (0..9).flat_map(|tile| (0..2).flat_map(move |t| (0..3).map(move |s| (tile, t, s)))) {
+        let camera = [tile % 3 * 3 + s, tile / 3 * 2 + t];
+        let exists = camera[0] < 7 && camera[1] < 5;
+        assert_eq!(tiling.place(camera), exists.then_some((tile, [8 * s, 12 * t])), "{camera:?}");
+        placed += u32::from(exists);
+    }
+    assert_eq!(placed, 7 * 5);
+    for outside in [[7, 0], [0, 5], [u32::MAX, 0], [0, u32::MAX]] {
+        assert_eq!(tiling.place(outside), None);
     }
 }
 

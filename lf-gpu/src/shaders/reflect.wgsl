@@ -23,7 +23,9 @@ fn mirror_vertex(@location(0) position: vec3f, @location(1) normal: vec3f) -> Su
 
 @fragment
 fn mirror_fragment(surface: Surface) -> @location(0) vec4f {
-    let normal = normalize(surface.normal);
+    // Interpolated normals may cancel out; then any unit vector will do.
+    let length = length(surface.normal);
+    let normal = select(vec3f(0.0, 1.0, 0.0), surface.normal / length, length > 0.0);
     let incident = surface.position - frame.eye;
     let direction = incident - 2.0 * dot(incident, normal) * normal;
     return vec4f(look_up(surface.position, direction), 1.0);

@@ -1,11 +1,14 @@
 //! glTF 2.0 scenes, by the `gltf` crate: geometry, node transforms, base colours with textures, emission, lights.
 
+use std::collections::VecDeque;
+use std::f32::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use gltf::buffer::Data as Buffer;
 use gltf::image::{Data as Picture, Format};
+use gltf::khr_lights_punctual::Kind;
 use gltf::mesh::Mode;
 use gltf::{Document, Gltf};
 use lf_math::{GeometryError, Image, normalized};
@@ -28,7 +31,14 @@ use crate::scene::{SceneBuilder, Vertex};
 pub fn import_gltf(path: &Path) -> Result<Imported, SceneError> {
     let broken = |source| SceneError::Broken { path: path.to_owned(), source };
     let File { document, buffers, pictures } = read(path)?;
-    let mut import = Import { buffers, builder: SceneBuilder::default(), lights: vec![], camera: None, left_out: 0 };
+    let mut import = Import {
+        buffers,
+        builder: SceneBuilder::default(),
+        lights: vec![],
+        camera: None,
+        left_out: 0,
+        broken_triangles: 0,
+    };
     let textures = pictures.iter().map(texture).collect::<Result<Vec<_>, _>>().map_err(broken)?;
     for material in document.materials() {
         import.builder.material(convert_material(&material, &textures));
@@ -38,7 +48,7 @@ pub fn import_gltf(path: &Path) -> Result<Imported, SceneError> {
         import.nodes(&document, &scene);
     }
     let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy());
-    let warnings = warnings(&document, import.left_out);
+    let warnings = warnings(&document, &import);
     if import.builder.is_empty() {
         return Err(SceneError::NoTriangles { path: path.to_owned() });
     }
@@ -77,6 +87,7 @@ struct Import {
     lights: Vec<Light>,
     camera: Option<(Vec3, Vec3)>,
     left_out: usize,
+    broken_triangles: usize,
 }
 
 impl Import {
@@ -84,8 +95,8 @@ impl Import {
     fn nodes(&mut self, document: &Document, scene: &gltf::Scene<'_>) {
         let plain = document.materials().len() as u32;
         let mut visited = vec![false; document.nodes().len()];
-        let mut open: Vec<_> = scene.nodes().map(|node| (node, Mat4::IDENTITY)).collect();
-        while let Some((node, world_from_parent)) = open.pop() {
+        let mut open: VecDeque<_> = scene.nodes().map(|node| (node, Mat4::IDENTITY)).collect();
+        while let Some((node, world_from_parent)) = open.pop_front() {
             if std::mem::replace(&mut visited[node.index()], true) {
                 continue;
             }
@@ -136,6 +147,7 @@ impl Import {
         for triangle in indices.chunks_exact(3) {
             let corner = |i: u32| positions.get(i as usize).copied();
             let [Some(a), Some(b), Some(c)] = [corner(triangle[0]), corner(triangle[1]), corner(triangle[2])] else {
+                self.broken_triangles += 1;
                 continue;
             };
             let flat = (b - a).cross(c - a);
@@ -151,11 +163,11 @@ impl Import {
     /// The file's lights; a sun if it names one; else a lamp at the camera. Ambient light fills in for indirect light.
     fn lighting(&mut self, sun: Option<Vec3>) -> Lighting {
         let mut lights = std::mem::take(&mut self.lights);
-        lights.extend(sun.map(|towards| Light::Sun { towards, irradiance: Vec3::new(1.6, 1.5, 1.3) }));
+        lights.extend(sun.map(|towards| Light::Sun { towards, strength: Vec3::new(1.6, 1.5, 1.3) }));
         if lights.is_empty() {
             let (min, max) = self.builder.bounds();
             let position = self.camera.map_or(0.5 * (min + max), |(eye, _)| eye + Vec3::Y * 0.3);
-            // Lights a white wall a quarter of the scene's diagonal away with irradiance 1.
+            // Makes a white wall a quarter of the scene's diagonal away as bright as white can be shown.
             let reach = 0.25 * (max - min).length();
             lights.push(Light::Point { position, intensity: Vec3::splat(reach * reach) });
         }
@@ -164,27 +176,28 @@ impl Import {
 }
 
 fn convert_light(light: &gltf::khr_lights_punctual::Light<'_>, position: Vec3, forward: Vec3) -> Option<Light> {
-    use gltf::khr_lights_punctual::Kind;
     // glTF gives candela and lux; 683 lm/W turns them into radiometric units, as Blender's exporter assumes.
-    let strength = Vec3::from(light.color()) * light.intensity() / 683.0;
+    let strength = Vec3::from(light.color()) * light.intensity() / (683.0 * PI);
     match light.kind() {
-        Kind::Directional => normalized(-forward).map(|towards| Light::Sun { towards, irradiance: strength }),
+        Kind::Directional => normalized(-forward).map(|towards| Light::Sun { towards, strength }),
         Kind::Point | Kind::Spot { .. } => Some(Light::Point { position, intensity: strength }),
     }
 }
 
-fn convert_material(material: &gltf::Material<'_>, textures: &[Arc<Texture>]) -> Material {
+fn convert_material(material: &gltf::Material<'_>, textures: &[Option<Arc<Texture>>]) -> Material {
     let pbr = material.pbr_metallic_roughness();
     let [r, g, b, _] = pbr.base_color_factor();
     let factor = Vec3::new(r, g, b);
-    let picture = pbr.base_color_texture().and_then(|info| textures.get(info.texture().source().index()));
+    let picture = pbr.base_color_texture().and_then(|info| textures.get(info.texture().source().index())?.as_ref());
     let surface = picture.map_or(Surface::Uniform(factor), |texture| Surface::Textured(Arc::clone(texture), factor));
     let emission = Vec3::from(material.emissive_factor()) * material.emissive_strength().unwrap_or(1.0);
     Material { surface, emission }
 }
 
-/// A decoded picture with its first three channels; 16-bit and float ones are reduced to 8 bits.
-fn texture(picture: &Picture) -> Result<Arc<Texture>, GeometryError> {
+/// A decoded picture in colour; of 16-bit values the high byte counts, grey stands for all channels.
+///
+/// Float pictures give `None`: PNG and JPEG, which glTF allows, have none.
+fn texture(picture: &Picture) -> Result<Option<Arc<Texture>>, GeometryError> {
     let (channels, bytes) = match picture.format {
         Format::R8 => (1, 1),
         Format::R8G8 => (2, 1),
@@ -194,19 +207,16 @@ fn texture(picture: &Picture) -> Result<Arc<Texture>, GeometryError> {
         Format::R16G16 => (2, 2),
         Format::R16G16B16 => (3, 2),
         Format::R16G16B16A16 => (4, 2),
-        Format::R32G32B32FLOAT => (3, 4),
-        Format::R32G32B32A32FLOAT => (4, 4),
+        Format::R32G32B32FLOAT | Format::R32G32B32A32FLOAT => return Ok(None),
     };
+    // Two channels are grey and alpha. The decoder gives values in this machine's byte order.
+    let high = if cfg!(target_endian = "little") { bytes - 1 } else { 0 };
     let channel = |pixel: &[u8], c: usize| {
-        let value = &pixel[c.min(channels - 1) * bytes..][..bytes];
-        match *value {
-            [a, b, c, d] => (255.0 * f32::from_le_bytes([a, b, c, d]).clamp(0.0, 1.0)) as u8,
-            // Little-endian: the last byte is the high one.
-            _ => value[bytes - 1],
-        }
+        let c = if channels < 3 { 0 } else { c };
+        pixel[c * bytes + high]
     };
     let texels = picture.pixels.chunks_exact(channels * bytes).map(|p| [channel(p, 0), channel(p, 1), channel(p, 2)]);
-    Ok(Arc::new(Texture { image: Image::new(picture.width, picture.height, texels.collect())? }))
+    Ok(Some(Arc::new(Texture { image: Image::new(picture.width, picture.height, texels.collect())? })))
 }
 
 /// Refuses attributes that name no accessor.
@@ -232,6 +242,9 @@ fn check_views(document: &Document, buffers: &[Buffer]) -> Result<(), GeometryEr
     for accessor in document.accessors() {
         let Some(view) = accessor.view() else { continue };
         let stride = view.stride().unwrap_or(accessor.size());
+        if stride < accessor.size() {
+            return Err(GeometryError::Length { what: "a stride", len: stride, expected: accessor.size() });
+        }
         let last = accessor.count().saturating_sub(1).saturating_mul(stride);
         let expected = accessor.offset().saturating_add(last).saturating_add(accessor.size());
         if expected > view.length() {
@@ -269,7 +282,7 @@ fn sun_direction(document: &Document) -> Option<Vec3> {
     normalized(Vec3::new(number(0)?, number(1)?, number(2)?))
 }
 
-fn warnings(document: &Document, left_out: usize) -> Vec<String> {
+fn warnings(document: &Document, import: &Import) -> Vec<String> {
     let mut list = Vec::new();
     let mut warn = |count: usize, what: &str| {
         if count > 0 {
@@ -277,13 +290,28 @@ fn warnings(document: &Document, left_out: usize) -> Vec<String> {
         }
     };
     let materials = || document.materials();
-    warn(left_out, "primitives are left out: transmissive, not triangles, or of types this program does not read");
+    warn(
+        import.left_out,
+        "primitives are left out: transmissive, not triangles, or of types this program does not read",
+    );
     warn(materials().filter(|m| m.normal_texture().is_some()).count(), "normal maps are not used");
     let metallic = |m: &gltf::Material<'_>| m.pbr_metallic_roughness().metallic_factor() > 0.5;
     warn(materials().filter(metallic).count(), "metallic materials are shaded as diffuse");
     let see_through = |m: &gltf::Material<'_>| m.alpha_mode() != gltf::material::AlphaMode::Opaque;
     warn(materials().filter(see_through).count(), "materials with alpha are shaded as opaque");
     warn(materials().filter(|m| m.emissive_texture().is_some()).count(), "emission textures are not used");
+    warn(import.broken_triangles, "triangles name vertices that do not exist and are left out");
+    let spots = document.lights().into_iter().flatten().filter(|l| matches!(l.kind(), Kind::Spot { .. }));
+    warn(spots.count(), "spot lights shine in all directions");
+    let primitives = document.meshes().flat_map(|mesh| mesh.primitives().collect::<Vec<_>>());
+    let colored = primitives.filter(|p| p.get(&gltf::Semantic::Colors(0)).is_some());
+    warn(colored.count(), "primitives have vertex colours, which are not used");
+    let repeats = |s: &gltf::texture::Sampler<'_>| {
+        [s.wrap_s(), s.wrap_t()].iter().all(|mode| *mode == gltf::texture::WrappingMode::Repeat)
+    };
+    warn(document.samplers().filter(|s| !repeats(s)).count(), "texture samplers do not repeat; here they do");
+    let transforms = document.extensions_used().filter(|name| *name == "KHR_texture_transform");
+    warn(transforms.count(), "extension (KHR_texture_transform) is not used");
     warn(document.skins().count() + document.animations().count(), "skins and animations are not used");
     list
 }

@@ -6,6 +6,7 @@ use glam::Vec3;
 use lf_math::TriangleMesh;
 
 use crate::SceneError;
+use crate::scene::check_positions;
 
 /// All triangles of an OBJ file as one mesh; polygons are cut into triangles, missing normals computed.
 ///
@@ -29,6 +30,8 @@ pub fn import_obj(path: &Path) -> Result<TriangleMesh, SceneError> {
     if triangles.is_empty() {
         return Err(SceneError::NoTriangles { path: path.to_owned() });
     }
+    check_positions(positions.iter().copied())
+        .map_err(|source| SceneError::Broken { path: path.to_owned(), source })?;
     TriangleMesh::new(positions, normals, triangles)
         .map_err(|source| SceneError::Broken { path: path.to_owned(), source })
 }
