@@ -109,7 +109,7 @@ fn texels_without_a_sample_have_none() {
 #[test]
 fn volumes_past_the_coordinates_are_refused() {
     let axis = |count| SampledAxis::new(-1.0, 1e-9, count).expect("an axis");
-    let huge = Slab::new(Face::PosX, 0.5, [axis(u32::MAX); 2], [axis(u32::MAX); 2], None).expect("a slab");
+    let huge = Slab::new(Face::PosX, 0.5, [axis(1 << 24); 2], [axis(1 << 24); 2], None).expect("a slab");
     let geometry = LightFieldGeometry::new(cell(), vec![huge]).expect("a light field");
     assert!(VolumeLayout::new(&geometry).is_err());
 }

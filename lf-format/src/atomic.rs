@@ -8,8 +8,8 @@ use std::path::Path;
 ///
 /// The bytes go to a temporary file in the same folder, which is flushed to the disk and then renamed onto `path`; on
 /// Unix the folder is flushed too. The new file gets the permissions that any new file gets, not those of the one it
-/// replaces. A symbolic link at `path` is itself replaced, not followed. A process that is killed half-way leaves a
-/// file named `.lfslab-….tmp` behind, which can be deleted.
+/// replaces. A symbolic link at `path`, to a regular file or to nothing, is itself replaced, not followed. A process that
+/// is killed half-way leaves a file named `.lfslab-….tmp` behind, which can be deleted.
 ///
 /// # Errors
 /// [`io::ErrorKind::InvalidInput`] if `path` names no file, or leads to something other than a regular file, such as a

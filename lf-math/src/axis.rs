@@ -140,7 +140,9 @@ mod tests {
         assert_eq!(largest.last_index() as u32, (1 << 24) - 1);
         for axis in [largest, SampledAxis::new(1000.0, 1e-3, 5).unwrap(), SampledAxis::new(-7e8, 64.0, 3).unwrap()] {
             assert!(axis.contains_index(axis.index(axis.last())), "{axis:?}");
-            assert!(!axis.contains_index(axis.index(axis.last() + axis.step())), "{axis:?}");
+            let reach = axis.first().abs() + axis.last().abs();
+            let beyond = axis.last() + 2.0 * axis.step() + 1e-5 * reach;
+            assert!(!axis.contains_index(axis.index(beyond)), "{axis:?}");
         }
     }
 

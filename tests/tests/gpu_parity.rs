@@ -49,7 +49,8 @@ fn agreement(a: &Image<[u8; 4]>, b: &Image<[u8; 4]>) -> Agreement {
     Agreement { all: share(a.texels().len()), covered: share(covered), outline, worst }
 }
 
-fn compare(gpu: &Gpu, what: &str, pass: &ReflectionPass, twin: &impl Environment) {
+/// `covered` is the least share of the mirror's own pixels that have to agree; of all pixels 99.9 % have to.
+fn compare(gpu: &Gpu, what: &str, pass: &ReflectionPass, twin: &impl Environment, covered: f64) {
     for (name, mesh) in mirrors() {
         let device_mesh = MirrorMesh::new(gpu, &mesh).expect("uploads");
         let target = Target::new(gpu, SIZE, SIZE).expect("a target");
@@ -67,7 +68,7 @@ fn compare(gpu: &Gpu, what: &str, pass: &ReflectionPass, twin: &impl Environment
             );
             assert!(found.all >= 0.999, "{what}, {name}, eye {eye}");
             // What is left lies on creases, where neighbouring rays part, and on the outline.
-            assert!(found.covered >= 0.997 && found.outline <= 40, "{what}, {name}, eye {eye}");
+            assert!(found.covered >= covered && found.outline <= 40, "{what}, {name}, eye {eye}");
         }
     }
 }
@@ -80,7 +81,7 @@ fn slabs_agree_within_two_steps_on_999_of_1000_pixels() {
     for storage in Storage::ALL {
         let texture = SlabTexture::with_storage(&gpu, &field, storage).expect("uploads");
         let pass = ReflectionPass::slabs(&gpu, &texture).expect("a pass");
-        compare(&gpu, &storage.to_string(), &pass, &twin);
+        compare(&gpu, &storage.to_string(), &pass, &twin, 0.999);
     }
 }
 
@@ -89,5 +90,5 @@ fn environment_maps_agree_within_two_steps_on_999_of_1000_pixels() {
     let (gpu, tracer) = (gpu(), museum());
     let cube = capture_cube(&tracer, &museum::cell(), 128, 2).expect("a cube map");
     let pass = ReflectionPass::environment(&gpu, &cube).expect("a pass");
-    compare(&gpu, "environment map", &pass, &CubeField::new(&cube));
+    compare(&gpu, "environment map", &pass, &CubeField::new(&cube), 0.998);
 }
