@@ -158,11 +158,12 @@ impl PackedLightField {
         for (row, tiles) in (0..).zip(rows_of_tiles) {
             let decode = |raw: &Vec<u8>| decode_picture(raw, tiling);
             let pictures = tiles.par_iter().map(decode).collect::<Result<Vec<_>, _>>()?;
-            let [per_s, per_t] = tiling.cameras_per_tile();
+            let per_t = tiling.cameras_per_tile()[1];
             for t in row * per_t..cameras_t.min((row + 1).saturating_mul(per_t)) {
                 for s in 0..cameras_s {
-                    let picture = &pictures[(s / per_s) as usize];
-                    let [x, y] = corner(tiling, [s, t]).map(|n| n as usize);
+                    let Some((tile, corner)) = tiling.place([s, t]) else { continue };
+                    let picture = &pictures[tile as usize % pictures.len()];
+                    let [x, y] = corner.map(|n| n as usize);
                     let rows = picture.texels().chunks_exact(picture.width() as usize).skip(y).take(height as usize);
                     texels.extend(rows.flat_map(|row| &row[x..][..width as usize]));
                 }
@@ -200,11 +201,6 @@ fn layout(geometry: &LightFieldGeometry, tilings: &[SlabTiling]) -> Result<Volum
     VolumeLayout::with_cameras_per_slice(geometry, |i| tilings[i].cameras_per_tile())
 }
 
-/// Top left texel of a camera's image in its tile's picture (clause 7.6 of the file format).
-fn corner(tiling: &SlabTiling, camera: [u32; 2]) -> [u32; 2] {
-    [0, 1].map(|i| camera[i] % tiling.cameras_per_tile()[i] * tiling.image_pitch()[i])
-}
-
 /// The picture of a tile: its cameras' images, opaque, each padded to whole blocks by repeating its last column and row.
 fn tile_picture(texels: &SlabTexels, tiling: &SlabTiling, tile: u32) -> Image<[u8; 4]> {
     let [per_s, per_t] = tiling.cameras_per_tile();
@@ -213,7 +209,7 @@ fn tile_picture(texels: &SlabTexels, tiling: &SlabTiling, tile: u32) -> Image<[u
     let mut picture = Image::filled(width, height, [0; 4]);
     for t in first_t..texels.cameras()[1].min(first_t + per_t) {
         for s in first_s..texels.cameras()[0].min(first_s + per_s) {
-            let [x, y] = corner(tiling, [s, t]);
+            let Some((_, [x, y])) = tiling.place([s, t]) else { continue };
             let padded = pad(texels.image([s, t]), texels.resolution(), tiling.image_pitch());
             picture.blit_rows(&padded, tiling.image_pitch()[0], x, y);
         }

@@ -57,10 +57,11 @@ impl Gpu {
         Ok(Self { device, queue, info: adapter.get_info(), lost })
     }
 
-    /// Name and API of the adapter.
+    /// Name and API of the adapter, without what some drivers add in brackets.
     #[must_use]
     pub fn name(&self) -> String {
-        format!("{}, {}", self.info.name, self.info.backend)
+        let name = self.info.name.split(" (").next().unwrap_or_default();
+        format!("{name}, {:?}", self.info.backend)
     }
 
     /// Name, kind, API and driver of the adapter.

@@ -8,8 +8,8 @@ use crate::{Face, Ray, SampledAxis};
 /// A slab of the environment light field (§3 and §5 of the paper), in cell space.
 ///
 /// With k the axis of the face, the camera with indices (i, j) stands at `s[i], t[j]` on the plane `x_k = plane`. Texel
-/// (m, n) of every camera's image holds the light that arrives along the slopes `u[m] = d_s/|d_k|`, `v[n] = d_t/|d_k|`
-/// from the side the face looks to. (s, u) run along the first and (t, v) along the second of [`Face::tangents`].
+/// (m, n) of every camera's image holds the light seen along the slopes `u[m] = d_s/|d_k|`, `v[n] = d_t/|d_k|`, towards the
+/// side the face looks to. (s, u) run along the first and (t, v) along the second of [`Face::tangents`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slab {
     face: Face,

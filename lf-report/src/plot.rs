@@ -199,15 +199,16 @@ fn distinct<'a>(results: &'a [MethodResult], name: impl Fn(&'a MethodResult) -> 
     names
 }
 
-/// Method and reflector; parameters and device only where these are needed to tell results apart. Long ones are cut.
+/// Method and reflector; device and parameters only where these are needed to tell results apart. Long ones are cut.
 fn label(results: &[MethodResult], result: &MethodResult, area: &Rect) -> String {
     let twins = || results.iter().filter(|r| r.method == result.method && r.reflector == result.reflector);
     let mut parts = vec![result.method.as_str(), result.reflector.as_str()];
-    if twins().any(|r| r.parameters != result.parameters) && !result.parameters.is_empty() {
-        parts.push(&result.parameters);
-    }
     if twins().any(|r| r.device != result.device) {
         parts.push(&result.device);
+    }
+    let same_device = || twins().filter(|r| r.device == result.device);
+    if same_device().any(|r| r.parameters != result.parameters) && !result.parameters.is_empty() {
+        parts.push(&result.parameters);
     }
     let mut text = parts.join(", ");
     if result.is_reference() {

@@ -61,10 +61,16 @@ fn bench(c: &mut Criterion) {
         hit.t
     };
     let rays = rays();
+    let mut slipped = 0;
     for &(origin, direction) in &rays {
         let t = tracer.distance(origin, direction).expect("the shell is closed");
-        assert!((t - bare(origin, direction)).abs() < 1e-3 * t, "both find the same surface");
+        match bare(origin, direction) {
+            found if (t - found).abs() < 1e-3 * t => {}
+            _ => slipped += 1,
+        }
     }
+    println!("the bare triangle test lets {slipped} of {RAYS} rays slip through the closed shell");
+    assert!(slipped < RAYS / 1000, "both find the same surfaces");
     let mut group = c.benchmark_group("rays");
     group.throughput(Throughput::Elements(RAYS as u64));
     let distance = |o, d| tracer.distance(o, d).unwrap_or(0.0);
