@@ -136,8 +136,8 @@ fn save_pictures(out: &Path, name: &str, frames: &ReflectorFrames) -> Result<Vec
             ("ray traced", truth.clone()),
             ("slabs", slabs[eye].clone()),
             ("environment map", cube[eye].clone()),
-            (&format!("error of slabs {gained}"), difference(truth, &slabs[eye])),
-            (&format!("error of environment map {gained}"), difference(truth, &cube[eye])),
+            (&format!("slab error {gained}"), difference(truth, &slabs[eye])),
+            (&format!("map error {gained}"), difference(truth, &cube[eye])),
         ]);
         let file = format!("{name}-eye-{eye}");
         let caption = "Reference, both methods, and their absolute errors, brightened.";

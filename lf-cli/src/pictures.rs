@@ -98,7 +98,8 @@ pub(crate) fn strip(panels: &[(&str, Image<[u8; 4]>)]) -> Image<[u8; 4]> {
     let mut strip = sheet(&[(String::new(), pictures)]);
     let width = panels.first().map_or(0, |(_, picture)| picture.width());
     for (column, (title, _)) in (0..).zip(panels) {
-        write_text(&mut strip, title, GAP + column * (width + GAP), GAP);
+        let fitting: String = title.chars().take((width / LETTER) as usize).collect();
+        write_text(&mut strip, &fitting, GAP + column * (width + GAP), GAP);
     }
     strip
 }
