@@ -16,7 +16,8 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// A mesh from its parts; `normals` may be empty, then they are computed by [`Self::smooth_normals`].
+    /// A mesh from its parts; `normals` may be empty, then they are the mean of the
+    /// adjacent triangles' normals weighted by area, and +Y where these cancel.
     ///
     /// A normal that is zero or not finite is replaced by the computed one.
     ///
