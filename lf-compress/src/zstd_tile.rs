@@ -4,7 +4,7 @@ use std::io;
 
 use zstd::zstd_safe::{self, CParameter};
 
-/// Level 9 packs BC1 of the demo's light fields within a few percent of level 19 at ten times its speed.
+/// A middle level: up to 15 the next ones gain almost nothing on BC1, 19 gains a tenth at many times the time.
 const LEVEL: i32 = 9;
 /// Largest window of a frame: 8 MiB.
 const MAX_WINDOW_LOG: u32 = 23;

@@ -1,8 +1,9 @@
 //! The texels of a block in the form the fits compute with, and the few vector operations they need.
 //!
-//! Every sum here is of integers whose total stays below 2²⁴, held in `f32`. Such sums are exact, so their order does
-//! not matter: the compiler may vectorise them, and every machine gets the same bits. Nothing is fused, and nothing
-//! but `+ − × ÷` and comparisons is used.
+//! Sums over the texels are of integers whose total stays below 2²⁴, held in `f32`. Such sums are exact, so their order
+//! does not matter: the compiler may vectorise them, and every machine gets the same bits. What is not an integer, a
+//! projection on an axis say, is computed texel by texel in a fixed order. Nothing is fused, and nothing but `+ − × ÷` and
+//! comparisons is used.
 
 use super::Texel;
 

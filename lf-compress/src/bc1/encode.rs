@@ -8,7 +8,7 @@ use super::fit::{Fit, bounding_fit, principal_fit, refit};
 use super::solid::solid_endpoints;
 use super::{BLOCK_BYTES, Quality, Texel};
 
-/// Least-squares rounds at most. Most blocks stop earlier, for lack of gain; the third adds 0.005 dB, a fourth nothing.
+/// Least-squares rounds at most. Most blocks stop earlier, for lack of gain; the third adds little, a fourth nothing.
 const ROUNDS: usize = 3;
 
 /// Encodes 4×4 texels, given in row-major order, as one opaque 4-colour block.
