@@ -10,7 +10,7 @@ use lf_scene::{Capture, capture_cube};
 
 use crate::args::{DemoArgs, Sampling};
 use crate::capture::{capture, encode, megabytes, metadata};
-use crate::device::{CpuSide, GpuSide, open_gpu};
+use crate::device::{CpuSide, GpuSide, open_gpu, or_cpu};
 use crate::frames::{Asked, MethodFrames, ReflectorFrames, Stage, agreement, full_orbit, orbit};
 use crate::info::load;
 use crate::output::{png, print, progress_bar, write, write_exr};
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
     // From here on everything comes from the file.
     let field = load(&file)?;
     let cpu = CpuSide::new(&field, &prepared.cube)?;
-    let gpu = open_gpu(args.cpu).map(|gpu| GpuSide::new(gpu, &field, &prepared.cube, args.size)).transpose()?;
+    let gpu = or_cpu(open_gpu(args.cpu).map(|gpu| GpuSide::new(gpu, &field, &prepared.cube, args.size)));
     let stage = Stage { source: &prepared.source, cpu: &cpu, gpu: gpu.as_ref() };
     let frames = draw(args, &stage, &reflectors)?;
     let parallax = parallax(args, &stage, &reflectors[0].1)?;

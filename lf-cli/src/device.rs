@@ -26,6 +26,11 @@ pub(crate) fn open_gpu(cpu_only: bool) -> Option<Gpu> {
     }
 }
 
+/// What a GPU made, if there is one and it could; else says why the CPU draws.
+pub(crate) fn or_cpu<T>(made: Option<Result<T>>) -> Option<T> {
+    made?.inspect_err(|error| eprintln!("device   CPU after all: {error:#}")).ok()
+}
+
 /// One method on one device, ready to draw frames of a mirror.
 pub(crate) trait Method {
     /// Draws a frame and waits until it is finished.

@@ -4,13 +4,14 @@ use std::path::Path;
 
 use anyhow::Result;
 use glam::Vec3;
-use lf_gpu::{MirrorMesh, ReflectionPass, SlabTexture, Target};
+use lf_compress::PackedLightField;
+use lf_gpu::{Gpu, MirrorMesh, ReflectionPass, SlabTexture, Target};
 use lf_ibr::SlabField;
-use lf_math::{Image, Pinhole};
+use lf_math::{Image, Pinhole, TriangleMesh};
 
 use crate::args::RenderArgs;
 use crate::capture::MAX_DECODED_BYTES;
-use crate::device::{CpuMethod, GpuMethod, Method, open_gpu};
+use crate::device::{CpuMethod, GpuMethod, Method, open_gpu, or_cpu};
 use crate::frames::FOV_Y;
 use crate::info::load;
 use crate::output::{check_writable, png, print, write};
@@ -27,15 +28,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     };
     let eye = args.eye.0 * 2.0 * cell.half_extent().min_element();
     let camera = Pinhole::look_at(eye, Vec3::ZERO, FOV_Y, args.size, args.size)?;
-    let picture = match open_gpu(args.cpu) {
-        Some(gpu) => {
-            let texture = SlabTexture::new(&gpu, &field)?;
-            eprintln!("slabs    {}", texture.storage());
-            let pass = ReflectionPass::slabs(&gpu, &texture)?;
-            let target = Target::new(&gpu, args.size, args.size)?;
-            let mesh = MirrorMesh::new(&gpu, &mesh)?;
-            finish(GpuMethod { gpu: &gpu, pass: &pass, target: &target, mesh: &mesh, camera: &camera })?
-        }
+    let on_gpu = open_gpu(args.cpu).map(|gpu| draw_on_gpu(&gpu, &field, &mesh, &camera));
+    let picture = match or_cpu(on_gpu) {
+        Some(picture) => picture,
         None => {
             let environment = SlabField::new(field.geometry().clone(), field.decode(MAX_DECODED_BYTES)?)?;
             finish(CpuMethod::new(&environment, &mesh, &camera))?
@@ -44,6 +39,15 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let grey = Image::filled(args.size, args.size, [40, 40, 44, 255]);
     write(&args.out, &png(&over(&picture, &grey))?)?;
     print(&args.out.display().to_string())
+}
+
+fn draw_on_gpu(gpu: &Gpu, field: &PackedLightField, mesh: &TriangleMesh, camera: &Pinhole) -> Result<Image<[u8; 4]>> {
+    let texture = SlabTexture::new(gpu, field)?;
+    eprintln!("slabs    {}", texture.storage());
+    let pass = ReflectionPass::slabs(gpu, &texture)?;
+    let target = Target::new(gpu, camera.width(), camera.height())?;
+    let mesh = MirrorMesh::new(gpu, mesh)?;
+    finish(GpuMethod { gpu, pass: &pass, target: &target, mesh: &mesh, camera })
 }
 
 fn finish(mut method: impl Method) -> Result<Image<[u8; 4]>> {
