@@ -6,7 +6,7 @@ use anyhow::{Result, bail};
 use lf_compress::PackedLightField;
 use lf_compress::bc1::Quality;
 use lf_format::{Metadata, TexelEncoding};
-use lf_math::{Image, LightFieldGeometry, PlanePlacement};
+use lf_math::{Image, LightFieldGeometry, PlanePlacement, SlabTexels};
 use lf_scene::{Capture, capture_slabs};
 
 use crate::args::{CaptureArgs, Encoding, Planes, Sampling};
@@ -83,13 +83,19 @@ pub(crate) const MAX_DECODED_BYTES: u64 = 8 << 30;
 fn stored_psnr(capture: &Capture, packed: &PackedLightField) -> Result<f64> {
     let (mut squares, mut values) = (0.0, 0.0);
     for (before, after) in capture.texels.iter().zip(packed.decode(MAX_DECODED_BYTES)?) {
-        let (before, after) = (before.contact_sheet(), after.contact_sheet());
+        let (before, after) = (column(before)?, column(&after)?);
         let all = Image::filled(before.width(), before.height(), true);
         let error = lf_math::image_error(&before, &after, &all)?;
         squares += error.mse * error.pixels as f64;
         values += error.pixels as f64;
     }
     Ok(10.0 * (255.0 * 255.0 * values / squares).log10())
+}
+
+/// All images of a slab one below the other.
+fn column(texels: &SlabTexels) -> Result<Image<[u8; 4]>> {
+    let ([cameras_s, cameras_t], [width, height]) = (texels.cameras(), texels.resolution());
+    Ok(Image::new(width, height * cameras_s * cameras_t, texels.texels().to_vec())?)
 }
 
 /// Who made the file from what.

@@ -51,14 +51,16 @@ fn window_size(frame: &[u8], content_size: u64) -> Option<u64> {
 mod tests {
     use super::*;
 
+    type Outcome = Result<(), Box<dyn std::error::Error>>;
+
     fn sample(len: u32) -> Vec<u8> {
         (0..len).map(|i| (i.wrapping_mul(i) >> 7) as u8).collect()
     }
 
     #[test]
-    fn frames_round_trip_and_anything_else_is_refused() {
+    fn frames_round_trip_and_anything_else_is_refused() -> Outcome {
         let raw = sample(10_000);
-        let frame = pack(&raw).expect("packs");
+        let frame = pack(&raw)?;
         assert_eq!(unpack(&frame, raw.len()), Ok(raw.clone()));
         assert!(unpack(&frame, raw.len() - 1).is_err());
         assert!(unpack(&frame[..frame.len() - 1], raw.len()).is_err());
@@ -68,22 +70,24 @@ mod tests {
         assert!(unpack(&skippable, raw.len()).is_err());
         assert!(unpack(b"not zstd", raw.len()).is_err());
         assert!(unpack(&[], raw.len()).is_err());
+        Ok(())
     }
 
     #[test]
-    fn frames_without_size_or_with_large_windows_are_refused() {
+    fn frames_without_size_or_with_large_windows_are_refused() -> Outcome {
         let raw = sample(9 << 20);
-        let frame = pack(&raw).expect("packs");
+        let frame = pack(&raw)?;
         assert_eq!(window_size(&frame, raw.len() as u64), Some(8 << 20));
         assert_eq!(unpack(&frame, raw.len()).map(|raw| raw.len()), Ok(9 << 20));
-        let wide = zstd::bulk::compress(&raw, 1).expect("packs");
-        let mut compressor = zstd::bulk::Compressor::new(1).expect("a compressor");
-        compressor.set_parameter(CParameter::WindowLog(27)).expect("sets");
-        for frame in [wide, compressor.compress(&raw).expect("packs")] {
+        let wide = zstd::bulk::compress(&raw, 1)?;
+        let mut compressor = zstd::bulk::Compressor::new(1)?;
+        compressor.set_parameter(CParameter::WindowLog(27))?;
+        for frame in [wide, compressor.compress(&raw)?] {
             let asks = window_size(&frame, raw.len() as u64);
             assert_eq!(unpack(&frame, raw.len()).is_err(), asks > Some(8 << 20), "{asks:?}");
         }
-        compressor.set_parameter(CParameter::ContentSizeFlag(false)).expect("sets");
-        assert!(unpack(&compressor.compress(&raw[..1000]).expect("packs"), 1000).is_err());
+        compressor.set_parameter(CParameter::ContentSizeFlag(false))?;
+        assert!(unpack(&compressor.compress(&raw[..1000])?, 1000).is_err());
+        Ok(())
     }
 }

@@ -2,8 +2,8 @@
 
 use alloc::vec::Vec;
 
+use crate::Slab;
 use crate::error::GeometryError;
-use crate::{Image, Slab};
 
 /// All texels of a slab: 8-bit RGBA, sRGB-encoded, camera after camera (s fastest, then t), each image row after row.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,19 +86,6 @@ impl SlabTexels {
         assert!(texel[0] < self.resolution[0], "texel {texel:?} of {:?}", self.resolution);
         self.image(camera)[texel[1] as usize * self.resolution[0] as usize + texel[0] as usize]
     }
-
-    /// A picture of all cameras side by side: camera (s, t) in column s, row t.
-    #[must_use]
-    pub fn contact_sheet(&self) -> Image<[u8; 4]> {
-        let [width, height] = self.resolution;
-        let mut sheet = Image::filled(self.cameras[0] * width, self.cameras[1] * height, [0; 4]);
-        for t in 0..self.cameras[1] {
-            for s in 0..self.cameras[0] {
-                sheet.blit_rows(self.image([s, t]), width, s * width, t * height);
-            }
-        }
-        sheet
-    }
 }
 
 #[cfg(test)]
@@ -113,7 +100,7 @@ mod tests {
         let all: Vec<[u8; 4]> = (0..120).map(|i| [i, 0, 0, 255]).collect();
         let texels = SlabTexels::new(&slab, all.clone()).unwrap();
         assert_eq!(texels.texel([1, 2], [3, 4]), [((2 * 2 + 1) * 5 + 4) * 4 + 3, 0, 0, 255]);
-        assert_eq!(texels.contact_sheet().get(4 + 3, 2 * 5 + 4), texels.texel([1, 2], [3, 4]));
+        assert_eq!(texels.image([1, 2])[4 * 4 + 3], texels.texel([1, 2], [3, 4]));
         assert!(SlabTexels::new(&slab, all[1..].to_vec()).is_err());
     }
 }

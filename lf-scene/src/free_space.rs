@@ -20,8 +20,7 @@ pub struct FreeSpace {
 }
 
 /// Distance from a point to the nearest surface, over 256 directions spread evenly; at most the scene's diagonal.
-#[must_use]
-pub fn free_radius(tracer: &Tracer, point: Vec3) -> f32 {
+fn free_radius(tracer: &Tracer, point: Vec3) -> f32 {
     let (min, max) = tracer.scene().bounds();
     let hit = |direction| tracer.distance(point, direction);
     spiral(DIRECTIONS).filter_map(hit).fold((max - min).length(), f32::min)

@@ -25,7 +25,7 @@ mod tracer;
 
 pub use capture::{Capture, capture_cube, capture_slabs};
 pub use error::SceneError;
-pub use free_space::{FreeSpace, find_free_space, free_radius, is_free};
+pub use free_space::{FreeSpace, find_free_space, is_free};
 pub use import::{Imported, import_gltf, import_obj};
 pub use light::{Light, Lighting};
 pub use material::{Material, Pattern, Surface, Texture};
