@@ -10,7 +10,7 @@ use lf_math::{Image, LightFieldGeometry, PlanePlacement, SlabTexels};
 use lf_scene::{Capture, capture_slabs};
 
 use crate::args::{CaptureArgs, Encoding, Planes, Sampling};
-use crate::output::{check_writable, print, progress_bar};
+use crate::output::{check_writable, megabytes, print, progress_bar};
 use crate::sources::Source;
 
 pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
@@ -109,9 +109,4 @@ pub(crate) fn metadata(source: &Source) -> Result<Metadata> {
         metadata.insert("license", line)?;
     }
     Ok(metadata)
-}
-
-/// A size in MiB for people.
-pub(crate) fn megabytes(bytes: u64) -> String {
-    format!("{:.2} MiB ({bytes} bytes)", bytes as f64 / f64::from(1 << 20))
 }

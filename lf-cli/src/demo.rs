@@ -9,11 +9,11 @@ use lf_report::{Figure, Machine, MethodResult, Report};
 use lf_scene::{Capture, capture_cube};
 
 use crate::args::{DemoArgs, Sampling};
-use crate::capture::{capture, encode, megabytes, metadata};
+use crate::capture::{capture, encode, metadata};
 use crate::device::{CpuSide, GpuSide, open_gpu, or_cpu};
 use crate::frames::{Asked, MethodFrames, ReflectorFrames, Stage, agreement, full_orbit, orbit};
 use crate::info::load;
-use crate::output::{png, print, progress_bar, write, write_exr};
+use crate::output::{megabytes, png, print, progress_bar, write, write_exr};
 use crate::pictures::{ERROR_GAIN, difference, middle, sheet, shrunk, strip};
 use crate::sources::{Source, builtin, from_file};
 

@@ -9,8 +9,7 @@ use lf_compress::PackedLightField;
 use lf_format::{Container, Limits};
 use lf_math::{SampledAxis, Slab};
 
-use crate::capture::megabytes;
-use crate::output::print;
+use crate::output::{megabytes, print};
 
 /// The bytes of a file, refused before reading if larger than the limits allow.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {

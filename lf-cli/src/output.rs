@@ -67,3 +67,8 @@ pub(crate) fn progress_bar(length: u64, what: &str, unit: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(length).with_style(style).with_message(what.to_owned())
 }
+
+/// A size in MiB for people.
+pub(crate) fn megabytes(bytes: u64) -> String {
+    format!("{:.2} MiB ({bytes} bytes)", bytes as f64 / f64::from(1 << 20))
+}

@@ -22,13 +22,7 @@ pub(crate) fn display(linear: &Image<Vec3>) -> Image<[u8; 4]> {
 
 /// `front` where it is opaque, `back` elsewhere. Both must have the same size.
 pub(crate) fn over(front: &Image<[u8; 4]>, back: &Image<[u8; 4]>) -> Image<[u8; 4]> {
-    let mut picture = back.clone();
-    for (pixel, &front) in picture.texels_mut().iter_mut().zip(front.texels()) {
-        if front[3] != 0 {
-            *pixel = front;
-        }
-    }
-    picture
+    masked(front, &front.map(|texel| texel[3] != 0), back)
 }
 
 /// `front` where the mask is true, `back` elsewhere.

@@ -96,7 +96,7 @@ impl ReflectionPass {
         gpu.checked("the slab pipeline", || {
             let sampler = bilinear_sampler(gpu);
             let resources = texture.bindings(&sampler);
-            Self::new(gpu, &shader_source(Some(texture.storage()), false), resources)
+            Self::new(gpu, &shader_source(Some(texture.storage()), false), &resources)
         })
     }
 
@@ -110,11 +110,12 @@ impl ReflectionPass {
             let sampler = bilinear_sampler(gpu);
             let resources =
                 [(1, wgpu::BindingResource::TextureView(&view)), (2, wgpu::BindingResource::Sampler(&sampler))];
-            Self::new(gpu, &shader_source(None, false), resources)
+            Self::new(gpu, &shader_source(None, false), &resources)
         })
     }
 
-    fn new<'a>(gpu: &Gpu, source: &str, resources: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>) -> Self {
+    /// `resources` are the environment's, beside the frame's uniform at binding 0.
+    fn new(gpu: &Gpu, source: &str, resources: &[(u32, wgpu::BindingResource<'_>)]) -> Self {
         let pipeline = mirror_pipeline(gpu, source);
         let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
@@ -122,15 +123,8 @@ impl ReflectionPass {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }];
-        for (binding, resource) in resources {
-            entries.push(wgpu::BindGroupEntry { binding, resource });
-        }
-        let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("environment"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let all = std::iter::once((0, frame.as_entire_binding())).chain(resources.iter().cloned());
+        let bindings = bind_group(gpu, &pipeline, all);
         Self { pipeline, bindings, frame }
     }
 
@@ -176,42 +170,69 @@ fn clear_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachme
 }
 
 fn mirror_pipeline(gpu: &Gpu, source: &str) -> wgpu::RenderPipeline {
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("mirror"),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
     let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
     let vertices = wgpu::VertexBufferLayout {
         array_stride: size_of::<[Vec3; 2]>() as u64,
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes: &attributes,
     };
+    let depth = wgpu::DepthStencilState {
+        format: Target::DEPTH,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(wgpu::CompareFunction::Greater),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    };
+    pipeline(gpu, source, "mirror", &[Some(vertices)], Some(depth))
+}
+
+/// A pipeline from the entry points `{name}_vertex` and `{name}_fragment` of a shader.
+pub(crate) fn pipeline(
+    gpu: &Gpu,
+    source: &str,
+    name: &str,
+    buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
+    depth_stencil: Option<wgpu::DepthStencilState>,
+) -> wgpu::RenderPipeline {
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(name),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("mirror"),
+        label: Some(name),
         layout: None,
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some("mirror_vertex"),
+            entry_point: Some(&format!("{name}_vertex")),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[Some(vertices)],
+            buffers,
         },
         primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: Target::DEPTH,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
+        depth_stencil,
         multisample: wgpu::MultisampleState::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some("mirror_fragment"),
+            entry_point: Some(&format!("{name}_fragment")),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(Target::COLOR.into())],
         }),
         multiview_mask: None,
         cache: None,
+    })
+}
+
+/// The resources of a pipeline's only bind group, by binding number.
+pub(crate) fn bind_group<'a>(
+    gpu: &Gpu,
+    pipeline: &wgpu::RenderPipeline,
+    resources: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>,
+) -> wgpu::BindGroup {
+    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+    let entries: Vec<_> = resources.into_iter().map(entry).collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &entries,
     })
 }
 

@@ -5,7 +5,7 @@ use lf_math::Face;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{bilinear_sampler, buffer, clear_color, shader_source};
+use crate::pass::{bilinear_sampler, bind_group, buffer, clear_color, pipeline, shader_source};
 use crate::storage::SlabTexture;
 use crate::target::Target;
 use crate::uniforms::ProbeUniform;
@@ -56,20 +56,13 @@ impl Probe {
 }
 
 fn draw(gpu: &Gpu, texture: &SlabTexture, probes: &[Probe], target: &Target) {
-    let pipeline = pipeline(gpu, &shader_source(Some(texture.storage()), true));
+    let pipeline = pipeline(gpu, &shader_source(Some(texture.storage()), true), "probe", &[], None);
     let raw = |p: &Probe| ProbeUniform { uv: p.uv, camera: p.camera, face: p.face.index().into(), padding: 0 };
     let raw: Vec<_> = probes.iter().map(raw).collect();
     let list = buffer(gpu, "probes", bytemuck::cast_slice(&raw), wgpu::BufferUsages::STORAGE);
     let sampler = bilinear_sampler(gpu);
-    let mut entries = vec![wgpu::BindGroupEntry { binding: 4, resource: list.as_entire_binding() }];
-    for (binding, resource) in texture.bindings(&sampler) {
-        entries.push(wgpu::BindGroupEntry { binding, resource });
-    }
-    let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("probe"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &entries,
-    });
+    let resources = texture.bindings(&sampler).into_iter().chain([(4, list.as_entire_binding())]);
+    let bindings = bind_group(gpu, &pipeline, resources);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -82,32 +75,4 @@ fn draw(gpu: &Gpu, texture: &SlabTexture, probes: &[Probe], target: &Target) {
         pass.draw(0..3, 0..1);
     }
     gpu.queue.submit([encoder.finish()]);
-}
-
-fn pipeline(gpu: &Gpu, source: &str) -> wgpu::RenderPipeline {
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("probe"),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("probe"),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("probe_vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("probe_fragment"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(Target::COLOR.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }
