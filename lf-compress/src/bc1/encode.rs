@@ -25,8 +25,10 @@ pub fn encode_block(texels: &[Texel; 16], quality: Quality) -> [u8; BLOCK_BYTES]
     let block = Block::new(texels);
     let fast = bounding_fit(&block);
     let fit = match quality {
-        Quality::Fast => fast,
-        Quality::Standard => refine(&block, fast.or_better(principal_fit(&block))),
+        Quality::Realtime | Quality::Fast => fast,
+        Quality::Standard | Quality::High | Quality::Best | Quality::Exhaustive => {
+            refine(&block, fast.or_better(principal_fit(&block)))
+        }
     };
     let packed = pack(&fit);
     debug_assert_eq!(fit.error, squared_error(texels, &packed), "the fit and the decoder disagree");

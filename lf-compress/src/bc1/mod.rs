@@ -43,14 +43,27 @@ pub const BLOCK_BYTES: usize = 8;
 pub type Texel = [u8; 4];
 
 /// How hard the encoder searches; all qualities are deterministic.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Quality {
-    /// One range fit along the diagonal of the bounding box. Blocks of two colours lose some contrast.
+    /// As fast as memory allows.
+    Realtime,
+    /// One range fit.
     Fast,
-    /// The better of two range fits, then least-squares refinement. About a third of the speed of `Fast`.
+    /// The better of two range fits, then least-squares refinement.
     #[default]
     Standard,
+    /// Searches further.
+    High,
+    /// Searches further still.
+    Best,
+    /// Spares nothing.
+    Exhaustive,
+}
+
+impl Quality {
+    /// All qualities, the fastest first.
+    pub const ALL: [Self; 6] = [Self::Realtime, Self::Fast, Self::Standard, Self::High, Self::Best, Self::Exhaustive];
 }
 
 /// Why an image cannot be encoded or decoded.
