@@ -18,8 +18,10 @@ pub const UNIT_ENCODER: &str = "intel_tex_2";
 type Prepared<'a> = Result<Box<dyn Job + 'a>, String>;
 
 /// Every encoder that is measured: the unit first, then the peers, then ours from the fastest to the best.
+///
+/// `repeat_blocks` is for ours: how far apart, in blocks, nearly equal pictures lie side by side; 0 where there are none.
 #[must_use]
-pub fn encoders() -> Vec<Codec<Picture>> {
+pub fn encoders(repeat_blocks: u32) -> Vec<Codec<Picture>> {
     let mut all = vec![
         Codec::peer(UNIT_ENCODER, "intel_tex_2", intel_tex),
         Codec::peer("etcpak", "ctt-etcpak", etcpak),
@@ -30,7 +32,7 @@ pub fn encoders() -> Vec<Codec<Picture>> {
     all.extend(texpresso());
     all.extend(compressonator());
     all.extend(dds());
-    all.extend(ours::encoders());
+    all.extend(ours::encoders(repeat_blocks));
     all
 }
 
@@ -155,7 +157,7 @@ mod tests {
     #[test]
     fn every_encoder_is_called_rightly() {
         let picture = gradient(64).unwrap();
-        for encoder in encoders() {
+        for encoder in encoders(0) {
             let blocks = encoder.encode(&picture).unwrap();
             let error = SquaredError::of(&blocks, &picture).unwrap();
             assert!(error.psnr_db() > 25.0, "{}: {:.2} dB", encoder.name(), error.psnr_db());
@@ -164,7 +166,7 @@ mod tests {
 
     #[test]
     fn names_are_unique_and_the_unit_is_first() {
-        let mut names: Vec<String> = encoders().iter().map(|e| e.name().to_owned()).collect();
+        let mut names: Vec<String> = encoders(0).iter().map(|e| e.name().to_owned()).collect();
         assert_eq!(names[0], UNIT_ENCODER);
         let count = names.len();
         names.sort_unstable();

@@ -19,7 +19,14 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Encoders: speed and PSNR, which of them no other beats, as table, CSV and plots.
-    Front(Common),
+    Front {
+        #[command(flatten)]
+        common: Common,
+        /// Distance in blocks of nearly equal pictures side by side (32 for the 128-texel cameras of an atlas): adds the
+        /// encoders that start from the picture to the left.
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        repeat_blocks: u32,
+    },
     /// Decoders: speed against copying and against texture2ddecoder, as table and CSV.
     Decoders(Common),
 }
@@ -48,10 +55,10 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 impl Common {
-    fn options(self) -> Options {
+    fn options(self, repeat_blocks: u32) -> Options {
         let words: Vec<String> = std::env::args().skip(1).collect();
         let command = format!("cargo run --release -p lf-bench -- {}", words.join(" "));
-        Options { images: self.images, out: self.out, only: self.only, seconds: self.seconds, command }
+        Options { images: self.images, out: self.out, only: self.only, seconds: self.seconds, repeat_blocks, command }
     }
 }
 
@@ -70,7 +77,7 @@ fn main() -> ExitCode {
 
 fn run(command: Command) -> Result<String, BenchError> {
     match command {
-        Command::Front(common) => compare_encoders(&common.options()),
-        Command::Decoders(common) => compare_decoders(&common.options()),
+        Command::Front { common, repeat_blocks } => compare_encoders(&common.options(repeat_blocks)),
+        Command::Decoders(common) => compare_decoders(&common.options(0)),
     }
 }

@@ -2,22 +2,31 @@
 //!
 //! Both directions run on the calling thread alone and write into memory that was there before.
 
-use lf_compress::bc1::{self, Pixels, Quality, Texel};
+use lf_compress::bc1::{self, EncodeOptions, Modes, Pixels, Quality, Texel};
 
 use crate::codec::{Codec, Encoded, Job, job_into, job_of};
 use crate::picture::Picture;
 
-/// An encoder for each quality, the fastest first.
-pub(crate) fn encoders() -> impl Iterator<Item = Codec<Picture>> {
-    Quality::ALL.into_iter().map(|quality| {
-        let name = format!("lf-{}", format!("{quality:?}").to_lowercase());
-        Codec::ours(&name, move |picture: &Picture| -> Result<Box<dyn Job + '_>, String> {
-            let (pixels, width, height) = (Pixels::Rgba8(picture.rgba()), picture.width(), picture.height());
-            let encode = move |blocks: &mut [u8]| {
-                bc1::encode_pixels_into(width, height, pixels, width as usize, quality, blocks)
-            };
-            Ok(job_into(picture.block_bytes(), move |blocks| encode(blocks).map_err(|error| error.to_string())))
-        })
+/// An encoder for each quality, the fastest first, and the best two with 3-colour blocks and black; where pictures repeat
+/// every so many blocks, those that make use of it too.
+pub(crate) fn encoders(repeat_blocks: u32) -> Vec<Codec<Picture>> {
+    let mut all: Vec<_> = Quality::ALL.map(|quality| encoder("", EncodeOptions::new(quality))).into();
+    let best = [Quality::Best, Quality::Exhaustive];
+    all.extend(best.map(|quality| encoder("+3c+blk", EncodeOptions::new(quality).modes(Modes::ThreeColorBlack))));
+    if repeat_blocks > 0 {
+        let seeded = [Quality::Standard, Quality::High, Quality::Best];
+        all.extend(seeded.map(|quality| encoder("+repeat", EncodeOptions::new(quality).repeat_blocks(repeat_blocks))));
+    }
+    all
+}
+
+fn encoder(suffix: &str, options: EncodeOptions) -> Codec<Picture> {
+    let name = format!("lf-{}{suffix}", format!("{:?}", options.quality).to_lowercase());
+    Codec::ours(&name, move |picture: &Picture| -> Result<Box<dyn Job + '_>, String> {
+        let (pixels, width, height) = (Pixels::Rgba8(picture.rgba()), picture.width(), picture.height());
+        let encode =
+            move |blocks: &mut [u8]| bc1::encode_pixels_into(width, height, pixels, width as usize, options, blocks);
+        Ok(job_into(picture.block_bytes(), move |blocks| encode(blocks).map_err(|error| error.to_string())))
     })
 }
 

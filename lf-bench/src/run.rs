@@ -31,6 +31,8 @@ pub struct Options {
     pub only: Vec<String>,
     /// CPU seconds for each codec on each class, as far as three rounds allow.
     pub seconds: f64,
+    /// Distance in blocks of nearly equal pictures side by side; adds our encoders that make use of it, where not 0.
+    pub repeat_blocks: u32,
     /// The command line, for the report.
     pub command: String,
 }
@@ -44,7 +46,7 @@ pub struct Options {
 /// [`BenchError::InvalidArgument`] for names that fit no encoder, [`BenchError::Io`] and [`BenchError::Image`] for
 /// files, [`BenchError::Codec`] if the unit cannot be measured. Any other encoder that fails is left out with a note.
 pub fn compare_encoders(options: &Options) -> Result<String, BenchError> {
-    let chosen = chosen(encoders(), &options.only, UNIT_ENCODER)?;
+    let chosen = chosen(encoders(options.repeat_blocks), &options.only, UNIT_ENCODER)?;
     let classes = classes(options)?;
     let measure = || classes.iter().map(|class| encode_class(class, &chosen, options.seconds)).collect();
     let results: Result<Vec<ClassResult>, BenchError> = one_thread(measure)?;
@@ -179,7 +181,7 @@ fn decode_class(class: &Class, decoders: &[Codec<Encoded>], seconds: f64) -> Res
 
 /// The class as blocks of the unit encoder.
 fn encoded(class: &Class) -> Result<Vec<Encoded>, BenchError> {
-    let encoders = encoders();
+    let encoders = encoders(0);
     let encode = |picture: &Picture| {
         let blocks = encoders[0].encode(picture)?;
         Ok(Encoded { name: picture.name().to_owned(), width: picture.width(), height: picture.height(), blocks })
@@ -265,11 +267,11 @@ mod tests {
     fn names_choose_encoders_and_keep_the_unit() {
         let names = |only: &[&str]| -> Result<Vec<String>, String> {
             let only: Vec<String> = only.iter().map(|&word| word.to_owned()).collect();
-            let codecs = chosen(encoders(), &only, UNIT_ENCODER).map_err(|error| error.to_string())?;
+            let codecs = chosen(encoders(0), &only, UNIT_ENCODER).map_err(|error| error.to_string())?;
             Ok(codecs.iter().map(|codec| codec.name().to_owned()).collect())
         };
         assert_eq!(names(&["tbc", "dds-fast"]).unwrap(), [UNIT_ENCODER, "tbc", "dds-fast"]);
-        assert_eq!(names(&[]).unwrap().len(), encoders().len());
+        assert_eq!(names(&[]).unwrap().len(), encoders(0).len());
         assert!(names(&["nothing"]).unwrap_err().contains("there are intel_tex_2, etcpak"));
     }
 
@@ -277,7 +279,7 @@ mod tests {
     fn a_class_is_measured_from_picture_to_table() {
         let pictures = crate::synthetic::gradient(32).into_iter().collect();
         let class = Class { name: "gradient", pictures };
-        let fast = chosen(encoders(), &["etcpak".to_owned()], UNIT_ENCODER).unwrap();
+        let fast = chosen(encoders(0), &["etcpak".to_owned()], UNIT_ENCODER).unwrap();
         let result = encode_class(&class, &fast, 0.0).unwrap();
         assert_eq!(result.results.len(), 2);
         assert!(result.results.iter().all(|r| r.point().psnr_db > 25.0 && r.point().speed > 0.0));

@@ -344,6 +344,27 @@ fn extreme_and_near_singular_blocks_keep_every_promise() {
     }
 }
 
+/// Five cameras side by side that see the same with a little parallax: what one found serves the next.
+#[test]
+fn repeated_pictures_start_from_each_other() {
+    const SIDE: usize = 64;
+    let picture = test_image(2 * SIDE as u32, SIDE as u32);
+    let atlas: Vec<Texel> =
+        (0..SIDE * 5 * SIDE).map(|i| picture[i / (5 * SIDE) * 2 * SIDE + i % SIDE + i / SIDE % 5]).collect();
+    let squared_error = |options: EncodeOptions| {
+        let blocks = encode_image(5 * SIDE as u32, SIDE as u32, &atlas, options).unwrap();
+        let decoded = decode_image(5 * SIDE as u32, SIDE as u32, &blocks).unwrap();
+        let pairs = atlas.as_chunks::<16>().0.iter().zip(decoded.as_chunks::<16>().0);
+        pairs.map(|(a, b)| error(a, b)).sum::<u64>()
+    };
+    for quality in [Quality::Standard, Quality::High] {
+        let [alone, seeded] = [0, SIDE as u32 / 4].map(|n| squared_error(EncodeOptions::new(quality).repeat_blocks(n)));
+        assert!(1000 * seeded < 997 * alone, "{quality:?}: {seeded} against {alone}");
+    }
+    let fast = EncodeOptions::new(Quality::Fast);
+    assert_eq!(squared_error(fast), squared_error(fast.repeat_blocks(16)), "only from Standard on");
+}
+
 #[test]
 fn three_colour_modes_are_used_only_where_allowed_and_help() {
     let mut rng = Rng(6);

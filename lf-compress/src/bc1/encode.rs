@@ -7,10 +7,11 @@ use fearless_simd::{Level, dispatch};
 
 use super::fit::Fit;
 use super::lanes::{I, M, MAX_LANES, Packed, Rows, U, lanes, load};
-use super::options::{Alpha, EncodeOptions, Modes, Quality, Weights};
+use super::options::{Alpha, EncodeOptions, Modes, Quality};
 use super::palette::Metric;
 use super::quick::{box_fit, refined_box_fit};
 use super::search::{Plan, four_color};
+use super::seeds::Seeds;
 use super::solid::solid_endpoints;
 use super::three_color::three_color;
 use super::{BLOCK_BYTES, Texel};
@@ -44,6 +45,8 @@ fn encode_rows_at(level: Level, rows: Rows<'_>, options: &EncodeOptions, blocks:
 #[inline(always)]
 fn encode_groups<S: Simd>(simd: S, rows: Rows<'_>, options: &EncodeOptions, blocks: &mut [[u8; BLOCK_BYTES]]) {
     let width = 4 * lanes::<S>();
+    let repeat = options.repeat().filter(|&repeat| options.quality >= Quality::Standard && repeat < blocks.len());
+    let mut seeds = repeat.map(|repeat| Seeds::new(repeat, blocks.len()));
     let mut padded = [[[0; 4]; 4 * MAX_LANES]; 4];
     for (number, blocks) in blocks.chunks_mut(lanes::<S>()).enumerate() {
         let left = number * width;
@@ -62,7 +65,7 @@ fn encode_groups<S: Simd>(simd: S, rows: Rows<'_>, options: &EncodeOptions, bloc
                 group[y] = &rows[y][left..left + width];
             }
         }
-        encode_group(simd, group, options, blocks);
+        encode_group(simd, group, options, seeds.as_mut().map(|seeds| (seeds, number * lanes::<S>())), blocks);
     }
 }
 
@@ -75,16 +78,21 @@ struct Coded<S: Simd> {
 }
 
 #[inline(always)]
-fn encode_group<S: Simd>(simd: S, rows: Rows<'_>, options: &EncodeOptions, blocks: &mut [[u8; BLOCK_BYTES]]) {
+fn encode_group<S: Simd>(
+    simd: S,
+    rows: Rows<'_>,
+    options: &EncodeOptions,
+    seeds: Option<(&mut Seeds, usize)>,
+    blocks: &mut [[u8; BLOCK_BYTES]],
+) {
     simd.vectorize(
         #[inline(always)]
         || {
             let texels = load(simd, rows);
-            let plain = options.weights == Weights::UNIFORM && *options == EncodeOptions::new(options.quality);
             match options.quality {
-                Quality::Realtime if plain => code_quick(simd, &texels, false).store(blocks),
-                Quality::VeryFast if plain => code_quick(simd, &texels, true).store(blocks),
-                _ => code_searched(simd, &texels, options).store(blocks),
+                Quality::Realtime if options.is_plain() => code_quick(simd, &texels, false).store(blocks),
+                Quality::VeryFast if options.is_plain() => code_quick(simd, &texels, true).store(blocks),
+                _ => code_searched(simd, &texels, options, seeds).store(blocks),
             }
             patch_solid::<S>(&texels, options, blocks);
         },
@@ -98,9 +106,21 @@ fn code_quick<S: Simd>(simd: S, texels: &Packed<S>, refined: bool) -> Coded<S> {
 }
 
 #[inline(always)]
-fn code_searched<S: Simd>(simd: S, texels: &Packed<S>, options: &EncodeOptions) -> Coded<S> {
+fn code_searched<S: Simd>(
+    simd: S,
+    texels: &Packed<S>,
+    options: &EncodeOptions,
+    seeds: Option<(&mut Seeds, usize)>,
+) -> Coded<S> {
     let (metric, plan) = (Metric { weights: options.weights.to_f32() }, Plan::of(options.quality));
-    let four = four_color(simd, texels, &metric, &plan);
+    let seed = match &seeds {
+        Some((seeds, first)) => Some(seeds.load(simd, *first)),
+        None => None,
+    };
+    let four = four_color(simd, texels, &metric, &plan, seed.as_ref());
+    if let Some((seeds, first)) = seeds {
+        seeds.store(first, &four.ends);
+    }
     let four = Coded::four_color(simd, [four.ends.color(0), four.ends.color(1)], four.shares, four.error);
     if options.modes == Modes::FourColor && !matches!(options.alpha, Alpha::Threshold(_)) {
         return four;
@@ -211,8 +231,11 @@ fn solid_block(rgb: [u8; 3]) -> [u8; BLOCK_BYTES] {
 
 #[cfg(test)]
 mod tests {
+    use std::num::NonZeroU32;
+
     use proptest::prelude::*;
 
+    use super::super::Weights;
     use super::super::decode_block;
     use super::super::levels::levels;
     use super::*;
@@ -221,8 +244,16 @@ mod tests {
         let weights = prop::sample::select(vec![Weights::UNIFORM, Weights::PERCEPTUAL]);
         let modes = prop::sample::select(vec![Modes::FourColor, Modes::ThreeColor, Modes::ThreeColorBlack]);
         let alpha = prop::sample::select(vec![Alpha::Ignore, Alpha::Threshold(1), Alpha::Threshold(128)]);
-        (prop::sample::select(&Quality::ALL[..]), weights, modes, alpha)
-            .prop_map(|(quality, weights, modes, alpha)| EncodeOptions { quality, weights, modes, alpha })
+        let repeat = prop::sample::select(vec![None, NonZeroU32::new(1), NonZeroU32::new(5), NonZeroU32::new(16)]);
+        (prop::sample::select(&Quality::ALL[..]), weights, modes, alpha, repeat).prop_map(
+            |(quality, weights, modes, alpha, repeat_blocks)| EncodeOptions {
+                quality,
+                weights,
+                modes,
+                alpha,
+                repeat_blocks,
+            },
+        )
     }
 
     /// Texels of the usual kinds: noise, few colours, small differences.
@@ -237,7 +268,7 @@ mod tests {
 
         /// One code for all machines: neither the vectors' width nor fused multiplication may show.
         #[test]
-        fn all_levels_agree(texels in prop::collection::vec(texels(), 4..4 * 80), options in options()) {
+        fn all_levels_agree(texels in prop::collection::vec(texels(), 4..4 * 160), options in options()) {
             let width = texels.len() / 4;
             let rows = std::array::from_fn(|y| &texels[y * width..(y + 1) * width]);
             let encode = |level| {
@@ -270,7 +301,7 @@ mod tests {
     #[inline(always)]
     fn code_one<S: Simd>(simd: S, texels: &[Texel; 16], options: &EncodeOptions) -> (i32, [u8; BLOCK_BYTES]) {
         let row = |y: usize| texels[4 * y..4 * y + 4].repeat(lanes::<S>());
-        let coded = code_searched(simd, &load(simd, [&row(0), &row(1), &row(2), &row(3)]), options);
+        let coded = code_searched(simd, &load(simd, [&row(0), &row(1), &row(2), &row(3)]), options, None);
         (coded.error.as_slice()[0], join(coded.colors.as_slice()[0], coded.indices.as_slice()[0]))
     }
 }

@@ -61,6 +61,7 @@ mod options;
 mod palette;
 mod quick;
 mod search;
+mod seeds;
 mod solid;
 mod three_color;
 mod walk;

@@ -1,5 +1,7 @@
 //! What a caller can choose.
 
+use std::num::NonZeroU32;
+
 use super::Bc1Error;
 
 /// How hard the encoder searches. Every quality is deterministic; each is slower and better than the one before.
@@ -104,6 +106,10 @@ pub struct EncodeOptions {
     pub modes: Modes,
     /// What alpha means.
     pub alpha: Alpha,
+    /// The image is a row of pictures of nearly the same, this many blocks apart, such as the cameras of a light field:
+    /// from [`Quality::Standard`] on, every block also starts from what was found for its fellow to the left. Below 16
+    /// blocks, so many pictures further left that it is at least that far.
+    pub repeat_blocks: Option<NonZeroU32>,
 }
 
 impl EncodeOptions {
@@ -132,6 +138,22 @@ impl EncodeOptions {
     pub fn alpha(mut self, alpha: Alpha) -> Self {
         self.alpha = alpha;
         self
+    }
+
+    /// The same for a row of nearly equal pictures, each so many blocks wide; 0 for any other image.
+    #[must_use]
+    pub fn repeat_blocks(mut self, blocks: u32) -> Self {
+        self.repeat_blocks = NonZeroU32::new(blocks);
+        self
+    }
+
+    /// Whether all but the quality is as by default, which is all that the two fastest fits know.
+    pub(super) fn is_plain(&self) -> bool {
+        *self == Self { repeat_blocks: self.repeat_blocks, ..Self::new(self.quality) }
+    }
+
+    pub(super) fn repeat(&self) -> Option<usize> {
+        self.repeat_blocks.and_then(|blocks| usize::try_from(blocks.get()).ok())
     }
 }
 

@@ -4,8 +4,8 @@ use fearless_simd::prelude::*;
 
 use super::axis::{principal_axis, range_moments};
 use super::cluster::{Ordered, best_rounded};
-use super::fit::Fit;
-use super::lanes::{Group, Packed, Rgb};
+use super::fit::{Ends, Fit};
+use super::lanes::{Group, I, M, Packed, Rgb};
 use super::least_squares::Moments;
 use super::options::Quality;
 use super::palette::{FourColor, Metric, Palette};
@@ -48,16 +48,28 @@ impl Plan {
     }
 }
 
+/// The palette entries over which a range fit lays the texels.
+const WHOLE: (f32, f32) = (0.0, 3.0);
+
 /// The best 4-colour fit found.
 #[inline(always)]
-pub(super) fn four_color<S: Simd>(simd: S, texels: &Packed<S>, metric: &Metric, plan: &Plan) -> Fit<S> {
+pub(super) fn four_color<S: Simd>(
+    simd: S,
+    texels: &Packed<S>,
+    metric: &Metric,
+    plan: &Plan,
+    seed: Option<&(Ends<S>, M<S>)>,
+) -> Fit<S> {
+    if plan.rounds == 0 {
+        return refined_once(simd, texels, metric, plan);
+    }
     let group = Group::new(simd, texels);
     let axis = principal_axis(&group, metric, plan.power_steps);
-    let start = range_moments(&group, metric, &FourColor, &axis, (0.0, 3.0));
-    if plan.rounds == 0 {
-        return Fit::new(&group, metric, &FourColor, start.solve::<FourColor>(simd)).0;
+    let start = range_moments(&group, metric, &FourColor, &axis, WHOLE);
+    let mut fit = settle(&group, metric, &FourColor, &start, plan.rounds);
+    if let Some((ends, has_seed)) = seed {
+        fit = fit.or_better(&seeded(&group, metric, *ends, *has_seed));
     }
-    let fit = settle(&group, metric, &FourColor, &start, plan.rounds);
     let Some(clusters) = plan.clusters else {
         return descend(&group, metric, &FourColor, &fit, plan.sweeps);
     };
@@ -75,6 +87,35 @@ pub(super) fn four_color<S: Simd>(simd: S, texels: &Packed<S>, metric: &Metric, 
         best = best.or_better(&descend(&group, metric, &FourColor, &fit, plan.sweeps));
     }
     best
+}
+
+/// A range fit and one refinement: the short way, kept apart so that it is compiled without what it does not need.
+#[inline(always)]
+fn refined_once<S: Simd>(simd: S, texels: &Packed<S>, metric: &Metric, plan: &Plan) -> Fit<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let group = Group::new(simd, texels);
+            let axis = principal_axis(&group, metric, plan.power_steps);
+            let start = range_moments(&group, metric, &FourColor, &axis, WHOLE);
+            Fit::new(&group, metric, &FourColor, start.solve::<FourColor>(simd)).0
+        },
+    )
+}
+
+/// What seeds make of the blocks, after one refinement; lanes without a seed get an error that nobody takes.
+#[inline(always)]
+fn seeded<S: Simd>(group: &Group<S>, metric: &Metric, ends: Ends<S>, has_seed: M<S>) -> Fit<S> {
+    group.simd.vectorize(
+        #[inline(always)]
+        || {
+            let (fit, moments) = Fit::new(group, metric, &FourColor, ends);
+            let (refined, _) = Fit::new(group, metric, &FourColor, moments.solve::<FourColor>(group.simd));
+            let mut best = fit.or_better(&refined);
+            best.error = has_seed.select(best.error, I::<S>::splat(group.simd, i32::MAX));
+            best
+        },
+    )
 }
 
 #[inline(always)]
