@@ -45,8 +45,10 @@ fn tests(crates: &[String], long: bool) -> Vec<(String, CommandLine)> {
     }
     let no_std = CommandLine::new("cargo test -p lf-math --no-default-features --locked");
     steps.push(("tests of lf-math without std".to_owned(), no_std));
+    let fuzz = "cargo check --manifest-path lf-compress/fuzz/Cargo.toml --target-dir target/fuzz --locked";
+    steps.push(("fuzz targets compile".to_owned(), CommandLine::new(fuzz)));
     if long {
-        let benches = "cargo bench -p lf-compress -p lf-ibr -p lf-scene --benches --locked -- --test";
+        let benches = "cargo bench -p lf-bench -p lf-compress -p lf-ibr -p lf-scene --benches --locked -- --test";
         steps.push(("each benchmark once".to_owned(), CommandLine::new(benches)));
     }
     steps
@@ -69,11 +71,11 @@ mod tests {
     #[test]
     fn every_package_is_tested_alone() {
         let crates = packages(&workspace_root()).unwrap();
-        for name in ["lf-cli", "lf-math", "lf-report", "lf-tests", "xtask"] {
+        for name in ["lf-bench", "lf-cli", "lf-math", "lf-report", "lf-tests", "xtask"] {
             assert!(crates.iter().any(|found| found == name), "{crates:?}");
         }
-        assert_eq!(tests(&crates, false).len(), crates.len() + 1);
-        assert_eq!(tests(&crates, true).len(), crates.len() + 2);
+        assert_eq!(tests(&crates, false).len(), crates.len() + 2);
+        assert_eq!(tests(&crates, true).len(), crates.len() + 3);
     }
 
     #[test]
