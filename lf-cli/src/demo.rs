@@ -76,7 +76,7 @@ const PARALLAX_CAPTION: &str = "The middle of the sphere from six eyes 7° apart
 /// Captures, encodes, writes the file and takes the environment map.
 fn prepare(args: &DemoArgs, source: Source, file: &Path) -> Result<Prepared> {
     let (capture, capture_time) = capture(&source, &args.scene.preset.sampling())?;
-    let (packed, encode_time, stored_psnr) = encode(&capture, lf_format::TexelEncoding::Bc1)?;
+    let (packed, encode_time, stored_psnr) = encode(&capture, lf_format::TexelEncoding::Bc1, 0.0)?;
     let file_bytes = packed.to_writer(metadata(&source)?)?.save(file)?;
     eprintln!("file     {}: {}", file.display(), megabytes(file_bytes));
     let start = Instant::now();

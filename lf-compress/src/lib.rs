@@ -4,19 +4,21 @@
 //! * [`volume`]: the place of every camera image in one power-of-two volume texture.
 //! * [`PackedLightField`]: a light field as encoded tiles, one per volume slice: made from texels or read from a
 //!   container, uploaded to a GPU as it is or decoded again.
+//! * [`tile`]: lossless packing of BC1 tiles for the file, and blocks that pack better.
 //!
-//! Tiles are packed by zstd for the file, one frame each.
+//! Tiles of other encodings are packed by zstd, one frame each.
 
 #![forbid(unsafe_code)]
 
 pub mod bc1;
 mod packed;
+pub mod tile;
 pub mod volume;
 mod zstd_tile;
 
 /// The container crate, whose types the packed light field speaks.
 pub use lf_format as format;
-pub use packed::{PackError, PackedLightField};
+pub use packed::{PackError, PackOptions, PackedLightField};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

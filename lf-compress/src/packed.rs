@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::bc1::{self, Bc1Error, Quality};
+use crate::tile::{self, RdoOptions, TileError, TileShape};
 use crate::volume::{VolumeLayout, VolumeTooLarge, cameras_per_slice};
 use crate::zstd_tile;
 
@@ -26,7 +27,7 @@ pub enum PackError {
     #[error(transparent)]
     Volume(#[from] VolumeTooLarge),
     /// A tile's bytes do not hold what the file says they do.
-    #[error("tile {tile} of slab {slab} {what} (clause 7.5 of the file format)")]
+    #[error("tile {tile} of slab {slab} {what} (clauses 7.5 and 7.8 of the file format)")]
     Tile {
         /// Position of the slab in the file.
         slab: usize,
@@ -49,6 +50,9 @@ pub enum PackError {
     /// zstd failed to pack a tile.
     #[error("zstd could not pack a tile: {0}")]
     Zstd(std::io::Error),
+    /// The tile codec refused a tile.
+    #[error(transparent)]
+    TileCodec(#[from] TileError),
     /// The texels given are not those of the geometry.
     #[error("the light field has {slabs} slabs but texels for {texels}")]
     SlabCount {
@@ -57,6 +61,15 @@ pub enum PackError {
         /// Slabs with texels.
         texels: usize,
     },
+}
+
+/// How texels become blocks. Concerns BC1 only.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PackOptions {
+    /// How hard the block encoder searches.
+    pub quality: Quality,
+    /// Error traded for bits in the file; none by default.
+    pub rdo: RdoOptions,
 }
 
 /// A light field whose texels are encoded (BC1 blocks or plain RGBA), tile by tile, ready to be uploaded or stored.
@@ -79,6 +92,19 @@ impl PackedLightField {
         encoding: TexelEncoding,
         quality: Quality,
     ) -> Result<Self, PackError> {
+        Self::encode_with(geometry, texels, encoding, &PackOptions { quality, ..PackOptions::default() })
+    }
+
+    /// As [`Self::encode`], with blocks that pack better at the cost of some error if the options ask for it.
+    ///
+    /// # Errors
+    /// As [`Self::encode`].
+    pub fn encode_with(
+        geometry: LightFieldGeometry,
+        texels: &[SlabTexels],
+        encoding: TexelEncoding,
+        options: &PackOptions,
+    ) -> Result<Self, PackError> {
         let slabs = geometry.slabs();
         if slabs.len() != texels.len() {
             return Err(PackError::SlabCount { slabs: slabs.len(), texels: texels.len() });
@@ -90,7 +116,7 @@ impl PackedLightField {
         let tilings = slabs.iter().map(tiling).collect::<Result<Vec<_>, _>>()?;
         let layout = layout(&geometry, &tilings)?;
         let encode_slab = |(tiling, texels): (&SlabTiling, &SlabTexels)| {
-            let tile = |tile| encode_picture(&tile_picture(texels, tiling, tile), tiling.encoding(), quality);
+            let tile = |tile| encode_picture(&tile_picture(texels, tiling, tile), tiling, options);
             (0..tiling.tile_count()).into_par_iter().map(tile).collect::<Result<Vec<_>, _>>()
         };
         let tiles = tilings.iter().zip(texels).map(encode_slab).collect::<Result<_, _>>()?;
@@ -115,17 +141,19 @@ impl PackedLightField {
         Ok(Self { geometry, tilings, layout, tiles })
     }
 
-    /// Packs the tiles into a container, by zstd where that makes them smaller, on all threads.
+    /// Packs the tiles into a container, BC1 by the [tile codec](crate::tile), others by zstd, on all threads. A tile
+    /// that does not shrink is stored as it is.
     ///
     /// # Errors
     /// See [`Writer`].
     pub fn to_writer(&self, metadata: Metadata) -> Result<Writer, PackError> {
         let mut writer = Writer::new(self.geometry.clone(), self.tilings.clone(), metadata)?;
         for (slab, tiles) in self.tiles.iter().enumerate() {
-            let packed = tiles.par_iter().map(|raw| zstd_tile::pack(raw)).collect::<Result<Vec<_>, _>>();
-            for (tile, (raw, packed)) in (0..).zip(tiles.iter().zip(packed.map_err(PackError::Zstd)?)) {
+            let tiling = &self.tilings[slab];
+            let packed = tiles.par_iter().map(|raw| pack_tile(raw, tiling)).collect::<Result<Vec<_>, _>>()?;
+            for (tile, (raw, (packing, packed))) in (0..).zip(tiles.iter().zip(packed)) {
                 if packed.len() < raw.len() {
-                    writer.add_tile(slab, tile, Packing::Zstd, packed)?;
+                    writer.add_tile(slab, tile, packing, packed)?;
                 } else {
                     writer.add_tile(slab, tile, Packing::None, raw.clone())?;
                 }
@@ -223,9 +251,16 @@ fn pad(image: &[[u8; 4]], [width, height]: [u32; 2], [pitch_u, pitch_v]: [u32; 2
     (0..pitch_v).flat_map(|v| (0..pitch_u).map(move |u| opaque(row(v)[u.min(width - 1) as usize]))).collect()
 }
 
-fn encode_picture(picture: &Image<[u8; 4]>, encoding: TexelEncoding, quality: Quality) -> Result<Vec<u8>, PackError> {
-    match encoding {
-        TexelEncoding::Bc1 => Ok(bc1::encode_image(picture.width(), picture.height(), picture.texels(), quality)?),
+fn encode_picture(picture: &Image<[u8; 4]>, tiling: &SlabTiling, options: &PackOptions) -> Result<Vec<u8>, PackError> {
+    match tiling.encoding() {
+        TexelEncoding::Bc1 => {
+            let (width, height, texels) = (picture.width(), picture.height(), picture.texels());
+            let mut blocks = bc1::encode_image(width, height, texels, options.quality)?;
+            if options.rdo.lambda > 0.0 {
+                tile::optimise(&tile_shape(tiling)?, texels, &mut blocks, &options.rdo)?;
+            }
+            Ok(blocks)
+        }
         TexelEncoding::Rgba8 => Ok(bytemuck::cast_slice(picture.texels()).to_vec()),
         other => Err(PackError::Encoding(other)),
     }
@@ -242,12 +277,35 @@ fn decode_picture(raw: &[u8], tiling: &SlabTiling) -> Result<Image<[u8; 4]>, Pac
     Ok(Image::new(width, height, texels)?)
 }
 
+/// The cameras of a tile and the blocks of their padded images.
+fn tile_shape(tiling: &SlabTiling) -> Result<TileShape, TileError> {
+    TileShape::new(tiling.cameras_per_tile(), tiling.image_pitch().map(|texels| texels / 4))
+}
+
+/// Packs a tile by the codec for its encoding. Tiles too large for the tile codec are left to zstd.
+fn pack_tile(raw: &[u8], tiling: &SlabTiling) -> Result<(Packing, Vec<u8>), PackError> {
+    match tile_shape(tiling) {
+        Ok(shape) if tiling.encoding() == TexelEncoding::Bc1 => {
+            Ok((Packing::Tile, tile::encode(&shape, raw, tile::LEVEL)?))
+        }
+        _ => Ok((Packing::Zstd, zstd_tile::pack(raw).map_err(PackError::Zstd)?)),
+    }
+}
+
 fn unpack_tile(container: &Container<'_>, slab: usize, tile: u32) -> Result<Vec<u8>, String> {
     let stored = container.tile(slab, tile).ok_or("is missing")?;
     let raw_len = usize::try_from(stored.raw_len).map_err(|_| "is larger than this machine's memory")?;
     match stored.packing {
         Packing::None => Ok(stored.bytes.to_vec()),
         Packing::Zstd => zstd_tile::unpack(stored.bytes, raw_len),
+        Packing::Tile => unpack_coded(stored.bytes, &container.tilings()[slab]).map_err(|error| match error {
+            TileError::Frame(what) => what,
+            other => format!("does not unpack: {other}"),
+        }),
         other => Err(format!("is packed by {other:?}, which this program does not know")),
     }
+}
+
+fn unpack_coded(bytes: &[u8], tiling: &SlabTiling) -> Result<Vec<u8>, TileError> {
+    tile::decode(&tile_shape(tiling)?, bytes)
 }

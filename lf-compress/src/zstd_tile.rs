@@ -7,7 +7,7 @@ use zstd::zstd_safe::{self, CParameter};
 /// A middle level: up to 15 the next ones gain almost nothing on BC1, 19 gains a tenth at many times the time.
 const LEVEL: i32 = 9;
 /// Largest window of a frame: 8 MiB.
-const MAX_WINDOW_LOG: u32 = 23;
+pub(crate) const MAX_WINDOW_LOG: u32 = 23;
 
 /// Packs a tile into one frame that states its content size.
 pub(crate) fn pack(raw: &[u8]) -> io::Result<Vec<u8>> {
@@ -22,20 +22,35 @@ pub(crate) fn pack(raw: &[u8]) -> io::Result<Vec<u8>> {
 ///
 /// Size and window are compared before anything is allocated, so a hostile frame costs at most `raw_len`.
 pub(crate) fn unpack(frame: &[u8], raw_len: usize) -> Result<Vec<u8>, String> {
-    let stated = zstd_safe::get_frame_content_size(frame).map_err(|_| "is not a zstd frame".to_owned())?;
+    let stated = content_size(frame)?;
     if stated != Some(raw_len as u64) {
         let stated = stated.map_or("no size".to_owned(), |n| format!("{n} bytes"));
         return Err(format!("is a zstd frame that states {stated} instead of {raw_len} bytes"));
     }
-    if window_size(frame, raw_len as u64).is_none_or(|window| window > 1 << MAX_WINDOW_LOG) {
+    unpack_up_to(frame, raw_len as u64, 0)
+}
+
+/// Unpacks exactly one frame that states a content size of at most `limit` bytes. The result has room for `slack` more.
+pub(crate) fn unpack_up_to(frame: &[u8], limit: u64, slack: usize) -> Result<Vec<u8>, String> {
+    let Some(stated) = content_size(frame)?.filter(|&stated| stated <= limit) else {
+        return Err(format!("is a zstd frame that does not state a size of at most {limit} bytes"));
+    };
+    if window_size(frame, stated).is_none_or(|window| window > 1 << MAX_WINDOW_LOG) {
         return Err("is a zstd frame with a window of more than 8 MiB".to_owned());
     }
     let frame_len = zstd_safe::find_frame_compressed_size(frame).map_err(|_| "is a broken zstd frame".to_owned())?;
     if frame_len != frame.len() {
         return Err(format!("has {} bytes after its zstd frame", frame.len() - frame_len));
     }
-    let raw = zstd::bulk::decompress(frame, raw_len).map_err(|e| format!("does not unpack: {e}"))?;
-    if raw.len() == raw_len { Ok(raw) } else { Err(format!("unpacks to {} instead of {raw_len} bytes", raw.len())) }
+    let stated = usize::try_from(stated).map_err(|_| "does not fit in memory".to_owned())?;
+    let mut raw = Vec::with_capacity(stated.saturating_add(slack));
+    let unpacked = zstd::bulk::Decompressor::new().and_then(|mut zstd| zstd.decompress_to_buffer(frame, &mut raw));
+    let found = unpacked.map_err(|e| format!("does not unpack: {e}"))?;
+    if found == stated { Ok(raw) } else { Err(format!("unpacks to {found} instead of {stated} bytes")) }
+}
+
+fn content_size(frame: &[u8]) -> Result<Option<u64>, String> {
+    zstd_safe::get_frame_content_size(frame).map_err(|_| "is not a zstd frame".to_owned())
 }
 
 /// The window that a frame asks for (RFC 8878, 3.1.1.1.2): the content size of a single-segment frame, else

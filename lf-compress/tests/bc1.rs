@@ -303,7 +303,7 @@ fn each_quality_is_better_than_the_one_before() {
 /// best of all there are.
 #[test]
 fn one_channel_blocks_come_near_the_brute_force_optimum() {
-    let expand = |level: u16| (level << 3 | level >> 2) as i32;
+    let expand = |level: u16| i32::from(level << 3 | level >> 2);
     let mut rng = Rng(5);
     let (mut found, mut optimum) = ([0; 2], 0);
     for round in 0..300 {

@@ -57,6 +57,8 @@ pub enum Packing {
     None,
     /// One zstd frame (spec §7.5).
     Zstd,
+    /// BC1 blocks in the tile codec (spec §7.8). Only tiles of BC1 slabs have it.
+    Tile,
     /// In a way that this version does not know, by its number in the file. Only chunks that a reader skips have it,
     /// never a tile.
     Unknown(u8),
@@ -67,6 +69,7 @@ impl Packing {
         match self {
             Self::None => 0,
             Self::Zstd => 1,
+            Self::Tile => 2,
             Self::Unknown(id) => id,
         }
     }
@@ -75,6 +78,7 @@ impl Packing {
         match id {
             0 => Self::None,
             1 => Self::Zstd,
+            2 => Self::Tile,
             _ => Self::Unknown(id),
         }
     }

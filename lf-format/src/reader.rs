@@ -10,9 +10,9 @@ use crate::{ChunkEntry, FormatError, Limits, Metadata, Packing, SlabTiling, Tag,
 /// One tile as it is stored.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct StoredTile<'a> {
-    /// How the bytes are packed: not at all or by zstd.
+    /// How the bytes are packed: not at all, by zstd or by the tile codec.
     pub packing: Packing,
-    /// The stored bytes: the raw tile itself, or one zstd frame.
+    /// The stored bytes: the raw tile itself, or one zstd frame of it or of its coded streams.
     pub bytes: &'a [u8],
     /// Length of the raw tile, bytes: [`SlabTiling::raw_len`]. What unpacks to any other length is damaged.
     pub raw_len: u64,
@@ -121,7 +121,7 @@ fn collect_tiles<'a>(
         let mut tiles = Vec::new();
         for tile in 0..tiling.tile_count() {
             let (index, entry) = stored.next().ok_or_else(|| missing(chunks.len(), [slab, tile]))?;
-            check_tile(index, entry, [slab, tile], tiling.raw_len())?;
+            check_tile(index, entry, [slab, tile], tiling)?;
             tiles.push(StoredTile { packing: entry.packing, bytes: entry.payload(file), raw_len: entry.raw_len });
         }
         slabs.push(tiles);
@@ -136,13 +136,19 @@ fn collect_tiles<'a>(
 }
 
 /// Holds the TILE entry of number `index` in the directory to the tile that must come next.
-fn check_tile(index: usize, entry: &ChunkEntry, place: [u32; 2], raw_len: u64) -> Result<(), FormatError> {
+fn check_tile(index: usize, entry: &ChunkEntry, place: [u32; 2], tiling: &SlabTiling) -> Result<(), FormatError> {
     if [entry.slab, entry.tile] != place {
         return Err(missing(index, place));
     }
+    let at = directory::entry_offset(index);
+    if !tiling.encoding().allows(entry.packing) {
+        let what = format!("{entry} uses a packing that is for BC1 tiles only");
+        return Err(FormatError::malformed(at.saturating_add(6), "§4.3", what));
+    }
+    let raw_len = tiling.raw_len();
     if entry.raw_len != raw_len {
         let what = format!("{entry} has {} raw bytes, the geometry makes it {raw_len}", entry.raw_len);
-        return Err(FormatError::malformed(directory::entry_offset(index).saturating_add(32), "§4.7", what));
+        return Err(FormatError::malformed(at.saturating_add(32), "§4.7", what));
     }
     Ok(())
 }

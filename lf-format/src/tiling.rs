@@ -2,7 +2,7 @@
 
 use lf_math::Slab;
 
-use crate::FormatError;
+use crate::{FormatError, Packing};
 
 /// Edge of a BC1 block in texels. Images are padded to multiples of it in either encoding, so that re-encoding a file
 /// moves no texel.
@@ -28,6 +28,11 @@ impl TexelEncoding {
 
     pub(crate) fn from_id(id: u8) -> Option<Self> {
         [Self::Bc1, Self::Rgba8].into_iter().find(|encoding| encoding.id() == id)
+    }
+
+    /// Whether tiles of this encoding may be packed so.
+    pub(crate) fn allows(self, packing: Packing) -> bool {
+        self == Self::Bc1 || packing != Packing::Tile
     }
 
     /// Bytes of 4×4 texels.

@@ -56,7 +56,7 @@ impl Writer {
     ///
     /// # Errors
     /// [`FormatError::InvalidArgument`] if there is no such tile, it is there already, the packing is
-    /// [`Packing::Unknown`], the bytes are empty, or they are not packed and not [`SlabTiling::raw_len`] long. Packed
+    /// [`Packing::Unknown`] or not for tiles of this encoding, the bytes are empty, or they are not packed and not [`SlabTiling::raw_len`] long. Packed
     /// bytes are not looked into.
     pub fn add_tile(&mut self, slab: usize, tile: u32, packing: Packing, bytes: Vec<u8>) -> Result<(), FormatError> {
         let refuse = |why: &str| Err(FormatError::argument(format!("tile {tile} of slab {slab} {why}")));
@@ -69,6 +69,9 @@ impl Writer {
         }
         if let Packing::Unknown(id) = packing {
             return refuse(&format!("uses packing {id}, which no reader knows"));
+        }
+        if !tiling.encoding().allows(packing) {
+            return refuse("uses a packing that is for BC1 tiles only");
         }
         let (len, raw_len) = (bytes.len() as u64, tiling.raw_len());
         if len == 0 || (packing == Packing::None && len != raw_len) {

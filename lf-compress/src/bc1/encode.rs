@@ -113,10 +113,7 @@ fn code_searched<S: Simd>(
     seeds: Option<(&mut Seeds, usize)>,
 ) -> Coded<S> {
     let (metric, plan) = (Metric { weights: options.weights.to_f32() }, Plan::of(options.quality));
-    let seed = match &seeds {
-        Some((seeds, first)) => Some(seeds.load(simd, *first)),
-        None => None,
-    };
+    let seed = if let Some((seeds, first)) = &seeds { Some(seeds.load(simd, *first)) } else { None };
     let four = four_color(simd, texels, &metric, &plan, seed.as_ref());
     if let Some((seeds, first)) = seeds {
         seeds.store(first, &four.ends);

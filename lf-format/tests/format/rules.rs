@@ -86,9 +86,22 @@ fn unknown_packings() {
     let critical = Chunk { packing: 9, ..Chunk::new(b"NEWC", 1, vec![1]) };
     assert_unsupported(&File::with(critical).to_bytes(), "§4.2", SECOND_ENTRY + 4);
     for (tag, flags) in [(b"TILE", 1), (b"META", 2), (b"GEOM", 1)] {
-        let chunk = Chunk { packing: 2, ..Chunk::new(tag, flags, vec![1]) };
+        let chunk = Chunk { packing: 3, ..Chunk::new(tag, flags, vec![1]) };
         assert_unsupported(&File::with(chunk).to_bytes(), "§4.3", SECOND_ENTRY + 6);
     }
+}
+
+#[test]
+fn the_tile_codec_is_for_bc1_only() {
+    let mut file = File::smallest();
+    file.chunks[1] = Chunk { packing: 2, raw_len: 8, ..Chunk::new(b"TILE", 1, vec![1, 2, 3]) };
+    let bytes = file.to_bytes();
+    let tile = parse(&bytes).unwrap().tile(0, 0).unwrap();
+    assert_eq!((tile.packing, tile.bytes), (Packing::Tile, &[1u8, 2, 3][..]));
+    // Texel encoding 2 is RGBA8, of which the smallest tile has 64 bytes.
+    file.chunks[0].payload[41] = 2;
+    file.chunks[1].raw_len = 64;
+    assert_breaks(&file.to_bytes(), "§4.3", SECOND_ENTRY + 6);
 }
 
 #[test]
