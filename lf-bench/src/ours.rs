@@ -21,7 +21,7 @@ pub(crate) fn encoders(repeat_blocks: u32) -> Vec<Codec<Picture>> {
 }
 
 fn encoder(suffix: &str, options: EncodeOptions) -> Codec<Picture> {
-    let name = format!("lf-{}{suffix}", format!("{:?}", options.quality).to_lowercase());
+    let name = format!("lf-{}{suffix}", options.quality.name());
     Codec::ours(&name, move |picture: &Picture| -> Result<Box<dyn Job + '_>, String> {
         let (pixels, width, height) = (Pixels::Rgba8(picture.rgba()), picture.width(), picture.height());
         let encode =

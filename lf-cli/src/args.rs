@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::{DVec3, Vec3};
+use lf_compress::bc1::Quality;
 use lf_math::PlanePlacement;
 
 /// Reflections with parallax from light field slabs: capture, compress, inspect and render them.
@@ -81,6 +83,9 @@ pub(crate) struct CaptureArgs {
     /// How texels are stored
     #[arg(long, value_enum, default_value_t = Encoding::Bc1)]
     pub(crate) encoding: Encoding,
+    /// How hard the block encoder searches; each step is slower and better. BC1 only
+    #[arg(long, default_value = "standard", value_parser = quality())]
+    pub(crate) quality: Quality,
     /// Trade error for a smaller file: the squared error per block (48 values) that a bit is worth. 10 is hard to see and
     /// saves about 40 %, 100 is rough. BC1 only
     #[arg(long, value_name = "LAMBDA", default_value_t = 0.0, value_parser = lambda)]
@@ -177,6 +182,13 @@ impl Preset {
             Self::Paper => "paper",
         }
     }
+}
+
+/// The encoder's qualities by name.
+fn quality() -> impl TypedValueParser<Value = Quality> {
+    let names = Quality::ALL.map(Quality::name);
+    let find = |text: String| Quality::ALL.into_iter().find(|quality| quality.name() == text).unwrap_or_default();
+    PossibleValuesParser::new(names).map(find)
 }
 
 /// A trade-off between error and bits: a number from 0 on.

@@ -3,7 +3,6 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
-use lf_compress::bc1::Quality;
 use lf_compress::tile::RdoOptions;
 use lf_compress::{PackOptions, PackedLightField};
 use lf_format::{Metadata, TexelEncoding};
@@ -30,7 +29,8 @@ pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
         Encoding::Bc1 => TexelEncoding::Bc1,
         Encoding::Rgba8 => TexelEncoding::Rgba8,
     };
-    let packed = encode(&captured, encoding, args.rdo)?.0;
+    let rdo = RdoOptions { lambda: args.rdo, ..RdoOptions::default() };
+    let packed = encode(&captured, encoding, &PackOptions { quality: args.quality, rdo })?.0;
     let writer = packed.to_writer(metadata(&source)?)?;
     let bytes = writer.save(&args.out)?;
     print(&format!("{}: {}", args.out.display(), megabytes(bytes)))
@@ -67,16 +67,13 @@ pub(crate) fn capture(source: &Source, sampling: &Sampling) -> Result<(Capture, 
 }
 
 /// Encodes a capture and says what it cost; also the encoding time and the PSNR of the stored texels.
-/// `lambda` is the squared error of a block that a bit in the file is worth, 0 for none.
 pub(crate) fn encode(
     capture: &Capture,
     encoding: TexelEncoding,
-    lambda: f32,
+    options: &PackOptions,
 ) -> Result<(PackedLightField, Duration, f64)> {
     let start = Instant::now();
-    let rdo = RdoOptions { lambda, ..RdoOptions::default() };
-    let options = PackOptions { quality: Quality::Standard, rdo };
-    let packed = PackedLightField::encode_with(capture.geometry.clone(), &capture.texels, encoding, &options)?;
+    let packed = PackedLightField::encode_with(capture.geometry.clone(), &capture.texels, encoding, options)?;
     let elapsed = start.elapsed();
     let psnr = stored_psnr(capture, &packed)?;
     let quality = if psnr.is_finite() { format!("{psnr:.2} dB") } else { "lossless".to_owned() };

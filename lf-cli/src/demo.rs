@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use lf_compress::PackOptions;
 use lf_math::{CubeMap, Image, Pinhole, PlanePlacement, TriangleMesh};
 use lf_report::{Figure, Machine, MethodResult, Report};
 use lf_scene::{Capture, capture_cube};
@@ -76,7 +77,7 @@ const PARALLAX_CAPTION: &str = "The middle of the sphere from six eyes 7° apart
 /// Captures, encodes, writes the file and takes the environment map.
 fn prepare(args: &DemoArgs, source: Source, file: &Path) -> Result<Prepared> {
     let (capture, capture_time) = capture(&source, &args.scene.preset.sampling())?;
-    let (packed, encode_time, stored_psnr) = encode(&capture, lf_format::TexelEncoding::Bc1, 0.0)?;
+    let (packed, encode_time, stored_psnr) = encode(&capture, lf_format::TexelEncoding::Bc1, &PackOptions::default())?;
     let file_bytes = packed.to_writer(metadata(&source)?)?.save(file)?;
     eprintln!("file     {}: {}", file.display(), megabytes(file_bytes));
     let start = Instant::now();

@@ -5,7 +5,7 @@ use lf_math::{GeometryError, Image, LightFieldGeometry, Slab, SlabTexels};
 use rayon::prelude::*;
 use thiserror::Error;
 
-use crate::bc1::{self, Bc1Error, Quality};
+use crate::bc1::{self, Bc1Error, EncodeOptions, Quality};
 use crate::tile::{self, RdoOptions, TileError, TileShape};
 use crate::volume::{VolumeLayout, VolumeTooLarge, cameras_per_slice};
 use crate::zstd_tile;
@@ -141,8 +141,8 @@ impl PackedLightField {
         Ok(Self { geometry, tilings, layout, tiles })
     }
 
-    /// Packs the tiles into a container, BC1 by the [tile codec](crate::tile), others by zstd, on all threads. A tile
-    /// that does not shrink is stored as it is.
+    /// Packs the tiles into a container, BC1 by the [tile codec](crate::tile) or by zstd, whichever is smaller, others by
+    /// zstd, on all threads. A tile that does not shrink is stored as it is.
     ///
     /// # Errors
     /// See [`Writer`].
@@ -255,9 +255,11 @@ fn encode_picture(picture: &Image<[u8; 4]>, tiling: &SlabTiling, options: &PackO
     match tiling.encoding() {
         TexelEncoding::Bc1 => {
             let (width, height, texels) = (picture.width(), picture.height(), picture.texels());
-            let mut blocks = bc1::encode_image(width, height, texels, options.quality)?;
+            let shape = tile_shape(tiling)?;
+            let encode = EncodeOptions::new(options.quality).repeat_blocks(shape.blocks()[0]);
+            let mut blocks = bc1::encode_image(width, height, texels, encode)?;
             if options.rdo.lambda > 0.0 {
-                tile::optimise(&tile_shape(tiling)?, texels, &mut blocks, &options.rdo)?;
+                tile::optimise(&shape, texels, &mut blocks, &options.rdo)?;
             }
             Ok(blocks)
         }
@@ -283,13 +285,19 @@ fn tile_shape(tiling: &SlabTiling) -> Result<TileShape, TileError> {
 }
 
 /// Packs a tile by the codec for its encoding. Tiles too large for the tile codec are left to zstd.
+/// The smaller of the tile codec's result and zstd's: surroundings that repeat themselves to the bit, as rendered tiles
+/// and bricks do, are better matched than predicted.
 fn pack_tile(raw: &[u8], tiling: &SlabTiling) -> Result<(Packing, Vec<u8>), PackError> {
-    match tile_shape(tiling) {
-        Ok(shape) if tiling.encoding() == TexelEncoding::Bc1 => {
-            Ok((Packing::Tile, tile::encode(&shape, raw, tile::LEVEL)?))
-        }
-        _ => Ok((Packing::Zstd, zstd_tile::pack(raw).map_err(PackError::Zstd)?)),
+    let matched = |level| zstd_tile::pack(raw, level).map_err(PackError::Zstd);
+    let quick = matched(zstd_tile::LEVEL)?;
+    if tiling.encoding() != TexelEncoding::Bc1 {
+        return Ok((Packing::Zstd, quick));
     }
+    let predicted = tile::encode(&tile_shape(tiling)?, raw, tile::LEVEL)?;
+    if predicted.len() <= quick.len() {
+        return Ok((Packing::Tile, predicted));
+    }
+    Ok((Packing::Zstd, matched(zstd_tile::HIGH_LEVEL)?))
 }
 
 fn unpack_tile(container: &Container<'_>, slab: usize, tile: u32) -> Result<Vec<u8>, String> {

@@ -31,6 +31,20 @@ impl Quality {
     /// All qualities, the fastest first.
     pub const ALL: [Self; 7] =
         [Self::Realtime, Self::VeryFast, Self::Fast, Self::Standard, Self::High, Self::Best, Self::Exhaustive];
+
+    /// The quality in lower case, for command lines and tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Realtime => "realtime",
+            Self::VeryFast => "veryfast",
+            Self::Fast => "fast",
+            Self::Standard => "standard",
+            Self::High => "high",
+            Self::Best => "best",
+            Self::Exhaustive => "exhaustive",
+        }
+    }
 }
 
 /// Weights of red, green and blue in the squared error that the encoder makes small.

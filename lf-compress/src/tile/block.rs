@@ -7,7 +7,7 @@ use crate::bc1::BLOCK_BYTES;
 pub(super) type RawBlock = [u8; BLOCK_BYTES];
 
 /// The even bits of 16 two-bit lanes.
-const EVEN: u32 = 0x5555_5555;
+pub(super) const EVEN: u32 = 0x5555_5555;
 
 /// A BC1 block, taken apart.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -46,15 +46,40 @@ impl Ends {
 }
 
 /// All ways to say `ends`, of which there are always two at least.
-pub(super) fn ways<'a>(ends: u32, around: &'a Prediction, costs: &'a Costs) -> impl Iterator<Item = Ends> + 'a {
-    let copies = (0..).zip(around.ends).filter(move |&(_, theirs)| theirs == ends);
-    let copies = copies.map(|(kind, _)| Ends { kind, steps: [0; 2], cost: 0.0 });
-    let stepped = (COPIES as u8..).zip(around.sources).map(move |(kind, source)| {
+#[inline(always)]
+pub(super) fn ways(ends: u32, around: &Prediction, costs: &Costs) -> Ways {
+    let mut ways = Ways { list: [Ends { kind: 0, steps: [0; 2], cost: 0.0 }; COPIES + SOURCES], count: 0 };
+    for (kind, theirs) in (0..).zip(around.ends) {
+        if theirs == ends {
+            ways.push(Ends { kind, steps: [0; 2], cost: 0.0 });
+        }
+    }
+    for (kind, source) in (COPIES as u8..).zip(around.sources) {
         let ([from0, from1], [to0, to1]) = (split(source.ends), split(ends));
         let steps = [step(from0, to0).unwrap_or(ESCAPE), step(from1, to1).unwrap_or(ESCAPE)];
-        Ends { kind, steps, cost: costs.step(steps[0]) + costs.step(steps[1]) }
-    });
-    copies.chain(stepped)
+        ways.push(Ends { kind, steps, cost: costs.step(steps[0]) + costs.step(steps[1]) });
+    }
+    ways
+}
+
+/// Ways to say endpoints.
+pub(super) struct Ways {
+    list: [Ends; COPIES + SOURCES],
+    count: usize,
+}
+
+impl Ways {
+    #[inline(always)]
+    fn push(&mut self, ends: Ends) {
+        if let Some(place) = self.list.get_mut(self.count) {
+            (*place, self.count) = (ends, self.count + 1);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Ends> {
+        self.list.iter().take(self.count)
+    }
 }
 
 /// A block as it goes into the streams.
@@ -96,10 +121,11 @@ pub(super) fn cheapest(block: Block, around: &Prediction, costs: &Costs) -> Choi
     let corrections = around.sources.map(|source| transfer(block.ends, source) ^ block.indices);
     let mut best = Choice { mode: 0, ends: Ends { kind: 0, steps: [0; 2], cost: 0.0 }, correction: 0 };
     let mut least = f32::INFINITY;
+    let ways = ways(block.ends, around, costs);
     for (source, correction) in corrections.into_iter().enumerate() {
         let (rows, bytes) = (rows_of(correction), correction.to_le_bytes());
         let row_cost: f32 = bytes.into_iter().filter(|&byte| byte != 0).map(|byte| costs.row(byte)).sum();
-        for ends in ways(block.ends, around, costs) {
+        for &ends in ways.iter() {
             let mode = mode(ends.kind, source, rows);
             let cost = ends.cost + row_cost + costs.mode(around.context, mode);
             if cost < least {

@@ -8,6 +8,8 @@ use super::grid::CONTEXTS;
 
 /// Fractional bits of a logarithm.
 const FRACTION: u32 = 10;
+/// Steps of red and green.
+const STEP_PAIRS: usize = 5 * 9;
 /// What an escaped endpoint costs beside the escape symbol: 16 bits, which compress a little.
 const ESCAPED_BITS: f32 = 14.5;
 /// Least and greatest cost of a symbol, bits: what a Huffman code with a longest code of 11 can do.
@@ -45,7 +47,10 @@ pub(super) struct Costs {
     modes: [[f32; 256]; CONTEXTS],
     steps: [f32; 256],
     rows: [f32; 256],
-    least_modes: [f32; CONTEXTS],
+    /// Bounds for the search, see the functions of these names.
+    least_modes: [[f32; 16]; CONTEXTS],
+    least_steps: [f32; STEP_PAIRS],
+    least_rows: [f32; 16],
     least_row: f32,
 }
 
@@ -59,7 +64,9 @@ impl Costs {
             modes: [std::array::from_fn(mode); CONTEXTS],
             steps: std::array::from_fn(step),
             rows: std::array::from_fn(row),
-            least_modes: [0.0; CONTEXTS],
+            least_modes: [[0.0; 16]; CONTEXTS],
+            least_steps: [0.0; STEP_PAIRS],
+            least_rows: [0.0; 16],
             least_row: 0.0,
         };
         costs.finish();
@@ -72,31 +79,38 @@ impl Costs {
             modes: counts.modes.map(bits),
             steps: bits(counts.steps),
             rows: bits(counts.rows),
-            least_modes: [0.0; CONTEXTS],
+            least_modes: [[0.0; 16]; CONTEXTS],
+            least_steps: [0.0; STEP_PAIRS],
+            least_rows: [0.0; 16],
             least_row: 0.0,
         };
         costs.finish();
         costs
     }
 
-    /// Charges the escapes and finds the least costs.
+    /// Charges the escapes, rules out the correction of a row that corrects nothing, and finds the least costs.
     fn finish(&mut self) {
         self.steps[usize::from(ESCAPE)] += ESCAPED_BITS;
-        let least = |costs: &[f32; 256]| costs.iter().copied().fold(f32::INFINITY, f32::min);
-        self.least_modes = self.modes.each_ref().map(least);
+        self.rows[0] = f32::INFINITY;
+        self.bound();
+    }
+
+    fn bound(&mut self) {
+        let least = |costs: &[f32]| costs.iter().copied().fold(f32::INFINITY, f32::min);
+        let chunks = |costs: &[f32; 256]| std::array::from_fn(|i| least(&costs[16 * i..16 * i + 16]));
+        self.least_modes = self.modes.each_ref().map(chunks);
+        self.least_steps = std::array::from_fn(|i| least(&self.steps[5 * i..5 * i + 5]));
+        self.least_rows = chunks(&self.rows);
         self.least_row = least(&self.rows);
     }
 
     /// All costs times `factor`.
     pub(super) fn scaled(&self, factor: f32) -> Self {
         let scale = |costs: [f32; 256]| costs.map(|cost| cost * factor);
-        Self {
-            modes: self.modes.map(scale),
-            steps: scale(self.steps),
-            rows: scale(self.rows),
-            least_modes: self.least_modes.map(|cost| cost * factor),
-            least_row: self.least_row * factor,
-        }
+        let (modes, steps, rows) = (self.modes.map(scale), scale(self.steps), scale(self.rows));
+        let mut costs = Self { modes, steps, rows, ..*self };
+        costs.bound();
+        costs
     }
 
     #[inline(always)]
@@ -111,6 +125,7 @@ impl Costs {
     }
 
     /// All steps.
+    #[inline(always)]
     pub(super) fn steps(&self) -> &[f32; 256] {
         &self.steps
     }
@@ -121,19 +136,40 @@ impl Costs {
         self.rows[usize::from(byte)]
     }
 
-    /// Cost of the cheapest mode in a context.
-    pub(super) fn least_mode(&self, context: usize) -> f32 {
-        self.least_modes[context % CONTEXTS]
+    /// The modes of a context that differ only in the set of rows.
+    #[inline(always)]
+    pub(super) fn modes(&self, context: usize, mode: u8) -> &[f32; 16] {
+        &self.modes[context % CONTEXTS].as_chunks().0[usize::from(mode >> 4)]
+    }
+
+    /// Cost of the cheapest of those modes.
+    #[inline(always)]
+    pub(super) fn least_mode(&self, context: usize, mode: u8) -> f32 {
+        self.least_modes[context % CONTEXTS][usize::from(mode >> 4)]
+    }
+
+    /// For each step of red and green, the cost with the cheapest step of blue.
+    #[inline(always)]
+    pub(super) fn least_steps(&self) -> &[f32; STEP_PAIRS] {
+        &self.least_steps
+    }
+
+    /// For each high half of a row of corrections, the cost with the cheapest low half.
+    #[inline(always)]
+    pub(super) fn least_rows(&self) -> &[f32; 16] {
+        &self.least_rows
     }
 
     /// Cost of the cheapest row of corrections.
+    #[inline(always)]
     pub(super) fn least_row(&self) -> f32 {
         self.least_row
     }
 
-    /// All rows of corrections.
-    pub(super) fn rows(&self) -> &[f32; 256] {
-        &self.rows
+    /// All rows of corrections, by their high half. The one that corrects nothing costs infinitely much.
+    #[inline(always)]
+    pub(super) fn rows(&self) -> &[[f32; 16]] {
+        self.rows.as_chunks().0
     }
 }
 

@@ -1,9 +1,12 @@
 //! From streams back to blocks. What costs time is to predict indices for endpoints that are not the neighbour's; blocks
 //! that copy them are done in a few nanoseconds.
 
-use super::block::{Block, ESCAPE, RawBlock, STEP_SUM, STEPS, join, split, transfer};
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::block::{Block, ESCAPE, RawBlock, STEP_SUM, STEPS, join, split};
 use super::grid::{Around, CONTEXTS, Grid, earlier};
 use super::streams::Content;
+use super::transfer::transfer;
 use super::{TileError, TileShape};
 
 /// Unpacks a tile to its blocks in raster order, exactly as they were given to [`encode`](super::encode).
@@ -17,13 +20,18 @@ pub fn decode(shape: &TileShape, bytes: &[u8]) -> Result<Vec<u8>, TileError> {
     let content = Content::unpack(bytes, shape.block_count())?;
     let mut reader = Reader::new(&content);
     let mut tile = vec![[0; 8]; shape.block_count()];
-    Grid::walk(shape, &mut tile, |around, tile| {
-        let (block, rows) = reader.block(around, tile);
+    dispatch!(Level::new(), simd => read_blocks(simd, shape, &mut reader, &mut tile));
+    reader.finish(&content)?;
+    Ok(tile.into_flattened())
+}
+
+#[inline(always)]
+fn read_blocks<S: Simd>(simd: S, shape: &TileShape, reader: &mut Reader<'_>, tile: &mut [RawBlock]) {
+    Grid::walk(shape, tile, |around, tile| {
+        let (block, rows) = reader.block(simd, around, tile);
         tile[around.place] = block.to_raw();
         (block, rows)
     });
-    reader.finish(&content)?;
-    Ok(tile.into_flattened())
 }
 
 /// A cursor in each stream, as an index into the whole content.
@@ -48,7 +56,7 @@ impl<'a> Reader<'a> {
 
     /// The next block, and how many rows of its indices were corrected.
     #[inline(always)]
-    fn block(&mut self, around: &Around<'_>, tile: &[RawBlock]) -> (Block, u8) {
+    fn block<S: Simd>(&mut self, simd: S, around: &Around<'_>, tile: &[RawBlock]) -> (Block, u8) {
         let mode = self.mode(around.context);
         let rows = usize::from(mode & 15);
         let correction = self.correction(rows);
@@ -63,7 +71,7 @@ impl<'a> Reader<'a> {
             _ => self.stepped(base),
         };
         let source = if mode & 0x10 == 0 { up } else { left };
-        (Block { ends, indices: transfer(ends, source) ^ correction }, ROW_COUNT[rows])
+        (Block { ends, indices: transfer(simd, ends, source) ^ correction }, ROW_COUNT[rows])
     }
 
     #[inline(always)]

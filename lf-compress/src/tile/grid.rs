@@ -57,6 +57,7 @@ impl Grid {
 
     /// Visits every block in coding order: `visit` takes what is around it, may look at and write the tile, and returns
     /// the block and the number of its rows that are corrected.
+    #[inline(always)]
     pub(super) fn walk(
         shape: &TileShape,
         tile: &mut [RawBlock],

@@ -4,7 +4,7 @@ use super::block::{Block, RawBlock, split, transfer};
 use super::choice::{Choice, Ends, Prediction, SOURCES, cheapest, mode, ways};
 use super::cost::{Costs, Counts};
 use super::encode::walk;
-use super::fit::{Errors, Target};
+use super::fit::{Errors, Target, smaller};
 use super::grid::Grid;
 use super::{TileError, TileShape};
 use crate::bc1::Texel;
@@ -84,10 +84,10 @@ fn pass(
         let (block, choice) = if texels.iter().all(|texel| texel[3] == 0) {
             (original, cheapest(original, &prediction, costs))
         } else {
-            let mut search = Search::new(&texels, original, max_loss, &prediction, costs);
-            let later = next_cameras.map(|step| tile.get(place + step));
-            let ends = later.into_iter().flatten().chain([&tile[place]]).map(|&raw| Block::from_raw(raw).ends);
-            search.run(ends)
+            let [left, below] = next_cameras.map(|step| *tile.get(place + step).unwrap_or(&tile[place]));
+            let others = [left, below, tile[place]].map(|raw| Block::from_raw(raw).ends);
+            let search = Search::new(&texels, original, max_loss, &prediction, costs);
+            search.run(others)
         };
         counts.add(around.context, &choice);
         tile[place] = block.to_raw();
@@ -123,12 +123,6 @@ struct Search<'a> {
     tried: Vec<u32>,
 }
 
-/// The four rows of a correction with their costs, if the row is zero and at best if it is not.
-struct Rows {
-    zero: [f32; 4],
-    best: [(f32, u8); 4],
-}
-
 impl<'a> Search<'a> {
     fn new(texels: &[Texel; 16], original: Block, max_loss: f32, prediction: &'a Prediction, costs: &'a Costs) -> Self {
         let target = Target::new(texels);
@@ -137,28 +131,29 @@ impl<'a> Search<'a> {
         let least = error + choice.cost(prediction.context, costs);
         let best = (original, choice);
         let limit = (error + max_loss.max(0.0)).min(MAX_ERROR);
-        Self { target, limit, prediction, costs, least, best, tried: Vec::with_capacity(16) }
+        Self { target, limit, prediction, costs, least, best, tried: Vec::with_capacity(32) }
     }
 
-    fn run(&mut self, others: impl Iterator<Item = u32>) -> (Block, Choice) {
-        self.attempt(self.best.0.ends);
-        for ends in self.prediction.ends.into_iter().chain(others) {
+    fn run(mut self, others: [u32; 3]) -> (Block, Choice) {
+        for ends in [self.best.0.ends].into_iter().chain(self.prediction.ends).chain(others) {
             self.attempt(ends);
         }
-        self.refine(self.best.0.indices);
-        for source in self.prediction.sources {
-            self.refine(transfer(self.best.0.ends, source));
+        let mut refined = [self.best.0.indices; 1 + SOURCES];
+        self.refine(refined[0]);
+        for (i, source) in self.prediction.sources.into_iter().enumerate() {
+            let indices = transfer(self.best.0.ends, source);
+            // What was refined before leads where it led.
+            if !refined[..=i].contains(&indices) {
+                self.refine(indices);
+            }
+            refined[i + 1] = indices;
         }
         self.best
     }
 
     /// Tries the endpoints that suit given indices.
     fn refine(&mut self, indices: u32) {
-        let normal = self.target.normal(indices);
-        let solution = normal.solve();
-        let start = |source: Block| solution.unwrap_or(source.ends);
-        let near = self.prediction.sources.map(|source| normal.descend(source.ends, start(source), self.costs));
-        for ends in solution.into_iter().chain(near) {
+        for ends in self.candidates(indices).into_iter().flatten() {
             // In the other order the palette has three colours, which the indices do not mean.
             let [color0, color1] = split(ends);
             if color0 >= color1 {
@@ -167,89 +162,134 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// The endpoints that suit given indices best, and those that do so within a step of each source.
+    fn candidates(&self, indices: u32) -> [Option<u32>; 1 + SOURCES] {
+        let normal = self.target.normal(indices);
+        let solution = normal.solve();
+        let near = |source: Block| normal.descend(source.ends, solution.unwrap_or(source.ends), self.costs);
+        let [up, left] = self.prediction.sources;
+        [solution, Some(near(up)), Some(near(left))]
+    }
+
     /// Tries all ways to code a block with these endpoints.
     fn attempt(&mut self, ends: u32) {
-        if self.tried.contains(&ends) {
-            return;
+        if !self.tried.contains(&ends) {
+            self.tried.push(ends);
+            self.attempt_new(ends);
         }
-        self.tried.push(ends);
+    }
+
+    /// Leaves as soon as a bound says that nothing better can be found.
+    fn attempt_new(&mut self, ends: u32) {
         let errors = self.target.errors(ends);
         let least_error = errors.least();
-        let ways: Vec<Ends> = ways(ends, self.prediction, self.costs).collect();
-        let least_cost = ways.iter().map(|way| way.cost).fold(f32::INFINITY, f32::min);
-        if least_error + least_cost + self.costs.least_mode(self.prediction.context) >= self.least
-            || least_error > self.limit
-        {
+        if least_error >= self.least || least_error > self.limit {
             return;
         }
+        let ways = ways(ends, self.prediction, self.costs);
         for source in 0..SOURCES {
+            let bound =
+                |way: &Ends| way.cost + self.costs.least_mode(self.prediction.context, mode(way.kind, source, 0));
+            let least_cost = ways.iter().map(bound).fold(f32::INFINITY, smaller);
+            if least_error + least_cost >= self.least {
+                continue;
+            }
             let predicted = transfer(ends, self.prediction.sources[source]);
-            let rows = Rows::new(&errors, predicted, self.costs);
-            for way in &ways {
-                self.weigh(ends, &errors, *way, source, predicted, &rows);
+            if let Some(rows) = Rows::new(&errors, predicted, self.costs, self.least - least_cost) {
+                for way in ways.iter() {
+                    self.weigh(ends, &errors, *way, source, predicted, &rows);
+                }
             }
         }
     }
 
     /// Finds the best set of rows to correct.
+    #[inline(always)]
     fn weigh(&mut self, ends: u32, errors: &Errors, way: Ends, source: usize, predicted: u32, rows: &Rows) {
-        for set in 0..16 {
-            let mode = mode(way.kind, source, set);
-            let row = |i: usize| if set >> i & 1 == 0 { rows.zero[i] } else { rows.best[i].0 };
-            let cost = row(0) + row(1) + row(2) + row(3) + way.cost + self.costs.mode(self.prediction.context, mode);
+        let first = mode(way.kind, source, 0);
+        if rows.least + way.cost + self.costs.least_mode(self.prediction.context, first) >= self.least {
+            return;
+        }
+        for (set, mode_cost) in self.costs.modes(self.prediction.context, first).iter().enumerate() {
+            let cost = rows.sets[set] + (way.cost + mode_cost);
             if cost < self.least {
-                let byte = |i: usize| if set >> i & 1 == 0 { 0 } else { rows.best[i].1 };
+                let byte = |i: usize| if set >> i & 1 == 0 { 0 } else { rows.best[i] };
                 let correction = u32::from_le_bytes(std::array::from_fn(byte));
                 let indices = predicted ^ correction;
                 if errors.of(indices) <= self.limit {
                     self.least = cost;
-                    self.best = (Block { ends, indices }, Choice { mode, ends: way, correction });
+                    self.best = (Block { ends, indices }, Choice { mode: first | set as u8, ends: way, correction });
                 }
             }
         }
     }
 }
 
+/// The four rows of a correction.
+struct Rows {
+    /// What the rows cost, errors included, by the set of those that are corrected.
+    sets: [f32; 16],
+    /// The least of them.
+    least: f32,
+    /// The best correction of each row.
+    best: [u8; 4],
+}
+
 impl Rows {
-    fn new(errors: &Errors, predicted: u32, costs: &Costs) -> Self {
-        let mut rows = Self { zero: [0.0; 4], best: [(0.0, 0); 4] };
-        for (row, byte) in predicted.to_le_bytes().into_iter().enumerate() {
-            let [first, last] = errors.pairs(row);
-            rows.zero[row] = first[usize::from(byte & 15)] + last[usize::from(byte >> 4)];
+    /// `None` if all sets of rows cost at least `most`; those that do may be said to cost infinitely much.
+    #[inline(always)]
+    fn new(errors: &Errors, predicted: u32, costs: &Costs, most: f32) -> Option<Self> {
+        let predicted = predicted.to_le_bytes();
+        let mut cost = [[0.0, f32::INFINITY]; 4];
+        // What each row costs at least: as predicted, or perfectly corrected at the least price.
+        let mut floors = [0.0; 4];
+        for row in 0..4 {
+            cost[row][0] = errors.of_row(row, predicted[row]);
+            floors[row] = smaller(cost[row][0], errors.least_of_row(row) + costs.least_row());
+        }
+        let mut best = [0; 4];
+        for row in 0..4 {
+            let total = (floors[0] + floors[1]) + (floors[2] + floors[3]);
+            if total >= most {
+                return None;
+            }
             // Where even a perfect correction at the least price would not pay, none is looked for.
-            let floor =
-                first.into_iter().fold(f32::INFINITY, f32::min) + last.into_iter().fold(f32::INFINITY, f32::min);
-            rows.best[row] = if floor + costs.least_row() < rows.zero[row] {
-                best_correction(&permuted(&first, byte & 15), &permuted(&last, byte >> 4), costs.rows())
-            } else {
-                (f32::INFINITY, 0)
-            };
+            if floors[row] < cost[row][0] {
+                let room = most - (total - floors[row]);
+                (cost[row][1], best[row]) = best_correction(errors, row, predicted[row], costs, room);
+                floors[row] = smaller(cost[row][0], cost[row][1]);
+            }
         }
-        rows
+        let (mut sets, mut least) = ([0.0; 16], f32::INFINITY);
+        for (set, sum) in sets.iter_mut().enumerate() {
+            let row = |i: usize| cost[i][set >> i & 1];
+            *sum = (row(0) + row(1)) + (row(2) + row(3));
+            least = smaller(least, *sum);
+        }
+        Some(Self { sets, least, best })
     }
 }
 
-/// Errors by what is changed in a pair of indices, from errors by pair.
-fn permuted(errors: &[f32; 16], pair: u8) -> [f32; 16] {
-    std::array::from_fn(|change| errors[change ^ usize::from(pair & 15)])
-}
-
-/// The cheapest row of corrections but zero, with its cost. Sixteen lanes at a time.
-fn best_correction(first: &[f32; 16], last: &[f32; 16], costs: &[f32; 256]) -> (f32, u8) {
-    let (mut least, mut high) = ([f32::INFINITY; 16], [0.0_f32; 16]);
-    for (i, (costs, &last)) in costs.as_chunks::<16>().0.iter().zip(last).enumerate() {
+/// The cheapest correction of a row, with its cost, if that is less than `most`. Sixteen lanes at a time.
+#[inline(always)]
+fn best_correction(errors: &Errors, row: usize, indices: u8, costs: &Costs, most: f32) -> (f32, u8) {
+    let [first, last] = errors.changes(row, indices);
+    let floor = first.into_iter().fold(f32::INFINITY, smaller);
+    let (mut least, mut best) = (most, (f32::INFINITY, 0));
+    for (high, last) in last.into_iter().enumerate() {
+        if floor + last + costs.least_rows()[high] >= least {
+            continue;
+        }
+        let mut sums = [0.0; 16];
         for lane in 0..16 {
-            let cost = first[lane] + last + costs[lane];
-            // A correction of zero is none.
-            let better = cost < least[lane] && !(i == 0 && lane == 0);
-            least[lane] = if better { cost } else { least[lane] };
-            high[lane] = if better { i as f32 } else { high[lane] };
+            sums[lane] = first[lane] + last + costs.rows()[high][lane];
         }
-    }
-    let mut best = (f32::INFINITY, 0);
-    for lane in 0..16 {
-        if least[lane] < best.0 {
-            best = (least[lane], high[lane] as u8 * 16 + lane as u8);
+        if sums.into_iter().fold(f32::INFINITY, smaller) < least {
+            for (lane, sum) in sums.into_iter().enumerate() {
+                if sum < least {
+                    (least, best) = (sum, (sum, (16 * high + lane) as u8));
+                }
+            }
         }
     }
     best
