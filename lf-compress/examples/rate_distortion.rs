@@ -4,7 +4,7 @@
 //! cargo run --release -p lf-compress --example rate_distortion -- atlas.png [--cameras 8x8] [--quality best]
 //! ```
 //!
-//! prints a table and writes `rate_distortion.svg` to the current folder. PSNR is over R, G and B, as an independent
+//! prints a table and writes `target/rate-distortion.svg`. PSNR is over R, G and B, as an independent
 //! decoder shows the blocks; beside each size stands that of one zstd frame of the same blocks, the same position of all
 //! cameras side by side. Times are those of one thread.
 
@@ -16,6 +16,8 @@ use lf_compress::bc1::{Quality, Texel, encode_image};
 use lf_compress::tile::{LEVEL, RdoOptions, TileShape, decode, encode, optimise};
 
 const LAMBDAS: [f32; 10] = [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0];
+
+const PLOT: &str = "target/rate-distortion.svg";
 
 /// One line of the table.
 struct Point {
@@ -54,8 +56,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("| {lambda} | {tile_bits:.3} | {zstd_bits:.3} | {db:.2} | {seconds:.2} | {times:.2} |");
         points.push(point);
     }
-    std::fs::write("rate_distortion.svg", svg(&points)?)?;
-    println!("\nrate_distortion.svg: the same as a plot");
+    std::fs::create_dir_all("target")?;
+    std::fs::write(PLOT, svg(&points)?)?;
+    println!("\n{PLOT}: the same as a plot");
     Ok(())
 }
 
