@@ -57,7 +57,14 @@ fn bc1_is_close_and_comes_back_bit_for_bit() {
 /// The whole way with rate–distortion optimisation: a smaller file, and the texels that the encoder settled on.
 #[test]
 fn optimised_blocks_make_a_smaller_file_that_comes_back() {
-    let (geometry, texels) = field();
+    let (geometry, smooth) = field();
+    let grain = |i: usize| ((i as u32).wrapping_mul(0x9e37_79b1) >> 28) as u8;
+    let grainy = |slab: &Slab, texels: &SlabTexels| {
+        let texels = texels.texels().iter().enumerate();
+        let texels = texels.map(|(i, t)| [t[0].saturating_add(grain(i)), t[1], t[2].saturating_add(grain(i / 3)), 255]);
+        SlabTexels::new(slab, texels.collect()).expect("texels")
+    };
+    let texels: Vec<_> = geometry.slabs().iter().zip(&smooth).map(|(slab, texels)| grainy(slab, texels)).collect();
     let file = |lambda| {
         let options = PackOptions { quality: Quality::Standard, rdo: RdoOptions { lambda, ..RdoOptions::default() } };
         let packed =
@@ -68,7 +75,7 @@ fn optimised_blocks_make_a_smaller_file_that_comes_back() {
         bytes.len()
     };
     let (plain, optimised) = (file(0.0), file(20.0));
-    assert!(optimised < plain, "{optimised} against {plain}");
+    assert!(10 * optimised < 9 * plain, "{optimised} against {plain}");
 }
 
 #[test]
