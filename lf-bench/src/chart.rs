@@ -1,5 +1,6 @@
 //! The plot of PSNR over speed for one class, drawn with plotters' SVG backend.
 
+use lf_report::{LabelPlacer, Rect};
 use plotters::coord::Shift;
 use plotters::coord::combinators::{BindKeyPoints, IntoLogRange};
 use plotters::drawing::DrawingAreaErrorKind;
@@ -9,7 +10,6 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use crate::codec::Maker;
 use crate::error::BenchError;
 use crate::front::{Point, front};
-use crate::labels::{Name, Rect, place};
 
 /// Size of the drawing in pixels.
 const SIZE: (u32, u32) = (1200, 760);
@@ -172,21 +172,20 @@ fn names(root: &Area<'_>, marks: &[Mark], pixels: &[(i32, i32)], area: Rect) -> 
     });
     // Letters of the usual sans-serif fonts are hardly wider than 0.58 of their height on average.
     let width = |name: &str| (name.chars().count() as f64 * 0.58 * TEXT_PX).ceil() as i32;
-    let boxed = |name: &str, point| Name { point, size: (width(name), TEXT_PX as i32 + 2) };
-    let boxes: Vec<Name> = named.iter().map(|(_, name, pixel)| boxed(name, *pixel)).collect();
-    for ((mark, name, pixel), placed) in named.iter().zip(place(&boxes, pixels, area)) {
+    let markers = pixels.iter().map(|&pixel| Rect::around(pixel, 4)).collect();
+    let mut placer = LabelPlacer::new(area, markers, Vec::new());
+    for (mark, name, pixel) in &named {
+        let placed = placer.place(*pixel, (width(name), TEXT_PX as i32 + 2));
         let color = match mark.kind {
             Kind::Measured(Maker::Ours) => OURS,
             Kind::Measured(Maker::Peer) => PEERS,
             Kind::Recorded => FAINT_INK,
         };
-        let text = placed.text;
-        if placed.is_far {
-            let end = (pixel.0.clamp(text.left, text.right), pixel.1.clamp(text.top, text.bottom));
+        if let Some(end) = placed.leader {
             root.draw(&PathElement::new(vec![*pixel, end], color.mix(0.5).stroke_width(1)))?;
         }
         let style = font(TEXT_PX).color(&color).pos(Pos::new(HPos::Center, VPos::Center));
-        root.draw(&Text::new(name.as_str(), text.center(), style))?;
+        root.draw(&Text::new(name.as_str(), placed.text.center(), style))?;
     }
     Ok(())
 }

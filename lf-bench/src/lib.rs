@@ -19,7 +19,6 @@ mod decoders;
 mod encoders;
 mod error;
 pub mod front;
-mod labels;
 pub mod measure;
 mod ours;
 mod picture;

@@ -6,25 +6,33 @@
 
 /// An axis-aligned rectangle in pixels, y downwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Rect {
-    pub(crate) left: i32,
-    pub(crate) top: i32,
-    pub(crate) right: i32,
-    pub(crate) bottom: i32,
+pub struct Rect {
+    /// Least x.
+    pub left: i32,
+    /// Least y.
+    pub top: i32,
+    /// Greatest x.
+    pub right: i32,
+    /// Greatest y.
+    pub bottom: i32,
 }
 
 impl Rect {
     /// The square around a point.
-    pub(crate) fn around((x, y): (i32, i32), radius: i32) -> Self {
+    #[must_use]
+    pub fn around((x, y): (i32, i32), radius: i32) -> Self {
         Self { left: x - radius, top: y - radius, right: x + radius, bottom: y + radius }
     }
 
     /// The rectangle that two points span.
-    pub(crate) fn spanned(a: (i32, i32), b: (i32, i32)) -> Self {
+    #[must_use]
+    pub fn spanned(a: (i32, i32), b: (i32, i32)) -> Self {
         Self { left: a.0.min(b.0), top: a.1.min(b.1), right: a.0.max(b.0), bottom: a.1.max(b.1) }
     }
 
-    pub(crate) fn overlaps(&self, other: &Self) -> bool {
+    /// Whether they share a point.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
         self.left <= other.right && other.left <= self.right && self.top <= other.bottom && other.top <= self.bottom
     }
 
@@ -33,7 +41,8 @@ impl Rect {
     }
 
     /// Centre, where the text is anchored.
-    pub(crate) fn center(&self) -> (i32, i32) {
+    #[must_use]
+    pub fn center(&self) -> (i32, i32) {
         ((self.left + self.right) / 2, (self.top + self.bottom) / 2)
     }
 }
@@ -48,7 +57,8 @@ const OVER_MARKER: i32 = 300;
 const OVER_LINE: i32 = 15;
 
 /// The labels placed so far and what else is in the way.
-pub(crate) struct LabelPlacer {
+#[derive(Debug)]
+pub struct LabelPlacer {
     area: Rect,
     markers: Vec<Rect>,
     lines: Vec<Rect>,
@@ -57,21 +67,22 @@ pub(crate) struct LabelPlacer {
 
 /// Where a label goes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Placed {
+pub struct Placed {
     /// The box of the text, inside the area.
-    pub(crate) text: Rect,
+    pub text: Rect,
     /// End of the leader line on the box, if the text is not right beside its point.
-    pub(crate) leader: Option<(i32, i32)>,
+    pub leader: Option<(i32, i32)>,
 }
 
 impl LabelPlacer {
     /// Labels are kept inside `area` and away from `markers` and (less so) `lines`.
-    pub(crate) fn new(area: Rect, markers: Vec<Rect>, lines: Vec<Rect>) -> Self {
+    #[must_use]
+    pub fn new(area: Rect, markers: Vec<Rect>, lines: Vec<Rect>) -> Self {
         Self { area, markers, lines, labels: Vec::new() }
     }
 
     /// Places a text of `size` (width, height) beside `point`; the size must fit into the area.
-    pub(crate) fn place(&mut self, point: (i32, i32), size: (i32, i32)) -> Placed {
+    pub fn place(&mut self, point: (i32, i32), size: (i32, i32)) -> Placed {
         let candidates = DISTANCES.iter().enumerate().flat_map(|(step, &distance)| {
             around(point, size, distance).into_iter().enumerate().map(move |(side, text)| {
                 let leader = (step > 0).then(|| nearest(text, point));

@@ -27,6 +27,7 @@ mod units;
 mod sample;
 
 pub use error::ReportError;
+pub use labels::{LabelPlacer, Placed, Rect};
 pub use machine::{Machine, cpu_name};
 pub use pareto::pareto_front;
 pub use report::{Figure, Report};

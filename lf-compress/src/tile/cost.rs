@@ -60,30 +60,18 @@ impl Costs {
         let mode = |mode: usize| 3.0 + (mode & 15).count_ones() as f32 * 0.5 + if mode >> 4 < 4 { 0.0 } else { 1.0 };
         let step = |symbol: usize| if symbol == 112 { 3.0 } else { 7.0 };
         let row = |byte: usize| 4.0 + 0.5 * byte.count_ones() as f32;
-        let mut costs = Self {
-            modes: [std::array::from_fn(mode); CONTEXTS],
-            steps: std::array::from_fn(step),
-            rows: std::array::from_fn(row),
-            least_modes: [[0.0; 16]; CONTEXTS],
-            least_steps: [0.0; STEP_PAIRS],
-            least_rows: [0.0; 16],
-            least_row: 0.0,
-        };
-        costs.finish();
-        costs
+        let modes = [std::array::from_fn(mode); CONTEXTS];
+        Self::of(modes, std::array::from_fn(step), std::array::from_fn(row))
     }
 
     /// The entropy of the counts.
     pub(super) fn new(counts: &Counts) -> Self {
-        let mut costs = Self {
-            modes: counts.modes.map(bits),
-            steps: bits(counts.steps),
-            rows: bits(counts.rows),
-            least_modes: [[0.0; 16]; CONTEXTS],
-            least_steps: [0.0; STEP_PAIRS],
-            least_rows: [0.0; 16],
-            least_row: 0.0,
-        };
+        Self::of(counts.modes.map(bits), bits(counts.steps), bits(counts.rows))
+    }
+
+    fn of(modes: [[f32; 256]; CONTEXTS], steps: [f32; 256], rows: [f32; 256]) -> Self {
+        let (least_modes, least_steps) = ([[0.0; 16]; CONTEXTS], [0.0; STEP_PAIRS]);
+        let mut costs = Self { modes, steps, rows, least_modes, least_steps, least_rows: [0.0; 16], least_row: 0.0 };
         costs.finish();
         costs
     }
