@@ -87,7 +87,7 @@ pub(crate) struct CaptureArgs {
     #[arg(long, default_value = "standard", value_parser = quality())]
     pub(crate) quality: Quality,
     /// Trade error for a smaller file: the squared error per block (48 values) that a bit is worth. 10 is hard to see and
-    /// saves about 40 %, 100 is rough. BC1 only
+    /// saves a fifth to two fifths, 100 is rough. BC1 only
     #[arg(long, value_name = "LAMBDA", default_value_t = 0.0, value_parser = lambda)]
     pub(crate) rdo: f32,
 }

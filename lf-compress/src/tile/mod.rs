@@ -11,8 +11,8 @@
 //! * a byte for each block says which, in one of four streams by how much the neighbours had to be corrected.
 //!
 //! The streams lie in one zstd frame, which by then finds few matches and is a fast Huffman coder. `spec/codecs.md`
-//! describes the bytes. A tile of 8×8 cameras of 128×128 texels has 1.19 bits a texel where zstd on the same blocks, in
-//! the same order, needs 1.67, and decodes at about four fifths of zstd's speed. Random access is by tile.
+//! describes the bytes. A tile of 8×8 cameras of 128×128 texels has 1.16 bits a texel where zstd on the same blocks, in
+//! the same order, needs 1.66, and decodes at about four fifths of zstd's speed. Random access is by tile.
 //!
 //! [`optimise`] goes further: it trades error for bits, in blocks that any BC1 decoder reads.
 
