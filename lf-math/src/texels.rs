@@ -5,20 +5,21 @@ use alloc::vec::Vec;
 use crate::Slab;
 use crate::error::GeometryError;
 
-/// All texels of a slab: 8-bit RGBA, sRGB-encoded, camera after camera (s fastest, then t), each image row after row.
+/// All texels of a slab, camera after camera (s fastest, then t), each image row after row: by default 8-bit RGBA,
+/// sRGB-encoded.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SlabTexels {
+pub struct SlabTexels<T = [u8; 4]> {
     cameras: [u32; 2],
     resolution: [u32; 2],
-    texels: Vec<[u8; 4]>,
+    texels: Vec<T>,
 }
 
-impl SlabTexels {
+impl<T: Copy> SlabTexels<T> {
     /// The texels of `slab`, in the order ((t·cameras_s + s)·resolution_v + v)·resolution_u + u.
     ///
     /// # Errors
     /// `texels` must hold exactly one value for each sample of the slab.
-    pub fn new(slab: &Slab, texels: Vec<[u8; 4]>) -> Result<Self, GeometryError> {
+    pub fn new(slab: &Slab, texels: Vec<T>) -> Result<Self, GeometryError> {
         let (cameras, resolution) = (slab.cameras(), slab.resolution());
         let sizes = [cameras[0], cameras[1], resolution[0], resolution[1]];
         // A product past the address space cannot equal any length.
@@ -61,7 +62,7 @@ impl SlabTexels {
 
     /// All texels in storage order.
     #[must_use]
-    pub fn texels(&self) -> &[[u8; 4]] {
+    pub fn texels(&self) -> &[T] {
         &self.texels
     }
 
@@ -70,7 +71,7 @@ impl SlabTexels {
     /// # Panics
     /// If the camera is outside the grid.
     #[must_use]
-    pub fn image(&self, camera: [u32; 2]) -> &[[u8; 4]] {
+    pub fn image(&self, camera: [u32; 2]) -> &[T] {
         assert!(camera[0] < self.cameras[0] && camera[1] < self.cameras[1], "camera {camera:?} of {:?}", self.cameras);
         let size = self.resolution[0] as usize * self.resolution[1] as usize;
         let index = camera[1] as usize * self.cameras[0] as usize + camera[0] as usize;
@@ -82,7 +83,7 @@ impl SlabTexels {
     /// # Panics
     /// If the camera or the texel is outside the slab.
     #[must_use]
-    pub fn texel(&self, camera: [u32; 2], texel: [u32; 2]) -> [u8; 4] {
+    pub fn texel(&self, camera: [u32; 2], texel: [u32; 2]) -> T {
         assert!(texel[0] < self.resolution[0], "texel {texel:?} of {:?}", self.resolution);
         self.image(camera)[texel[1] as usize * self.resolution[0] as usize + texel[0] as usize]
     }
