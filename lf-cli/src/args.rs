@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -26,9 +26,11 @@ pub(crate) enum Command {
     /// Draw a mirror that reflects a .lfslab file
     Render(RenderArgs),
     /// Show what a .lfslab file holds
-    Info(FileArgs),
+    Info(InfoArgs),
     /// Check every byte of a .lfslab file
-    Validate(FileArgs),
+    Validate(ValidateArgs),
+    /// Leave out what no ray through the cell asks for, without encoding anything again
+    Crop(CropArgs),
 }
 
 /// Where the light comes from.
@@ -90,13 +92,15 @@ pub(crate) struct CaptureArgs {
     /// saves a fifth to two fifths, 100 is rough. BC1 only
     #[arg(long, value_name = "LAMBDA", default_value_t = 0.0, value_parser = lambda)]
     pub(crate) rdo: f32,
+    /// Keep the texels that no ray through the cell asks for, too
+    #[arg(long)]
+    pub(crate) whole: bool,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// The light field
-    #[arg(value_name = "FILE")]
-    pub(crate) file: PathBuf,
+    #[command(flatten)]
+    pub(crate) input: FileArgs,
     /// The picture to write (.png)
     #[arg(long, value_name = "PNG")]
     pub(crate) out: PathBuf,
@@ -114,11 +118,54 @@ pub(crate) struct RenderArgs {
     pub(crate) cpu: bool,
 }
 
+/// Memory that reading a file may take, MiB.
+const MAX_MEMORY_MIB: u64 = 4096;
+
+/// A file to read, and what reading it may cost.
 #[derive(Debug, Args)]
 pub(crate) struct FileArgs {
     /// The light field
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
+    /// How much memory reading the file may take, in MiB
+    #[arg(long, value_name = "MIB", default_value_t = MAX_MEMORY_MIB)]
+    pub(crate) max_memory: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    #[command(flatten)]
+    pub(crate) input: FileArgs,
+    /// Write JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ValidateArgs {
+    #[command(flatten)]
+    pub(crate) input: FileArgs,
+    /// How findings are written
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CropArgs {
+    #[command(flatten)]
+    pub(crate) input: FileArgs,
+    /// The file to write
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+}
+
+/// How findings are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Lines for people
+    Text,
+    /// JSON, as spec/validate.schema.json describes it
+    Json,
 }
 
 /// Numbers of cameras and texels.
@@ -166,6 +213,13 @@ pub(crate) struct Sampling {
     pub(crate) placement: PlanePlacement,
     /// Rays per texel and axis.
     pub(crate) grid: u32,
+}
+
+impl FileArgs {
+    /// A file to read with the usual limit.
+    pub(crate) fn new(file: &Path) -> Self {
+        Self { file: file.to_owned(), max_memory: MAX_MEMORY_MIB }
+    }
 }
 
 impl Preset {

@@ -6,12 +6,15 @@ use anyhow::{Result, bail};
 use lf_compress::tile::RdoOptions;
 use lf_compress::{PackOptions, PackedLightField};
 use lf_format::{Metadata, TexelEncoding};
-use lf_math::{Image, LightFieldGeometry, PlanePlacement, SlabTexels};
+use lf_math::{Coverage, Image, LightFieldGeometry, PlanePlacement, SlabTexels};
 use lf_scene::{Capture, capture_slabs};
 
 use crate::args::{CaptureArgs, Encoding, Planes, Sampling};
 use crate::output::{check_writable, megabytes, print, progress_bar};
 use crate::sources::Source;
+
+/// Edge of the blocks that windows are rounded out to, texels.
+const BLOCK: u32 = 4;
 
 pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
     check_writable(&args.out)?;
@@ -24,15 +27,17 @@ pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
     };
     let cameras = args.cameras.unwrap_or(preset.cameras);
     let resolution = args.resolution.unwrap_or(preset.resolution);
-    let (captured, _) = capture(&source, &Sampling { cameras, resolution, placement, grid: preset.grid })?;
+    let (mut captured, _) = capture(&source, &Sampling { cameras, resolution, placement, grid: preset.grid })?;
+    if !args.whole {
+        crop(&mut captured)?;
+    }
     let encoding = match args.encoding {
         Encoding::Bc1 => TexelEncoding::Bc1,
         Encoding::Rgba8 => TexelEncoding::Rgba8,
     };
     let rdo = RdoOptions { lambda: args.rdo, ..RdoOptions::default() };
     let packed = encode(&captured, encoding, &PackOptions { quality: args.quality, rdo })?.0;
-    let writer = packed.to_writer(metadata(&source)?)?;
-    let bytes = writer.save(&args.out)?;
+    let bytes = packed.save(&args.out, metadata(&source)?)?;
     print(&format!("{}: {}", args.out.display(), megabytes(bytes)))
 }
 
@@ -66,6 +71,20 @@ pub(crate) fn capture(source: &Source, sampling: &Sampling) -> Result<(Capture, 
     Ok((captured, elapsed))
 }
 
+/// Leaves out the texels that no ray through the cell asks for.
+pub(crate) fn crop(capture: &mut Capture) -> Result<()> {
+    let count = |capture: &Capture| capture.texels.iter().map(|slab| slab.texels().len() as f64).sum::<f64>();
+    let all = count(capture);
+    for (slab, texels) in capture.geometry.slabs().iter().zip(&mut capture.texels) {
+        let needed = Coverage::of_cell(slab, capture.geometry.cell()).aligned(BLOCK);
+        if !needed.is_whole() {
+            *texels = texels.crop(needed)?;
+        }
+    }
+    eprintln!("crop     {:.1} % of the texels are needed", 100.0 * count(capture) / all);
+    Ok(())
+}
+
 /// Encodes a capture and says what it cost; also the encoding time and the PSNR of the stored texels.
 pub(crate) fn encode(
     capture: &Capture,
@@ -88,8 +107,8 @@ pub(crate) const MAX_DECODED_BYTES: u64 = 8 << 30;
 fn stored_psnr(capture: &Capture, packed: &PackedLightField) -> Result<f64> {
     let (mut squares, mut values) = (0.0, 0.0);
     for (before, after) in capture.texels.iter().zip(packed.decode(MAX_DECODED_BYTES)?) {
-        let (before, after) = (column(before)?, column(&after)?);
-        let all = Image::filled(before.width(), before.height(), true);
+        let (before, after) = (row(before)?, row(&after)?);
+        let all = Image::filled(before.width(), 1, true);
         let error = lf_math::image_error(&before, &after, &all)?;
         squares += error.mse * error.pixels as f64;
         values += error.pixels as f64;
@@ -97,10 +116,9 @@ fn stored_psnr(capture: &Capture, packed: &PackedLightField) -> Result<f64> {
     Ok(10.0 * (255.0 * 255.0 * values / squares).log10())
 }
 
-/// All images of a slab one below the other.
-fn column(texels: &SlabTexels) -> Result<Image<[u8; 4]>> {
-    let ([cameras_s, cameras_t], [width, height]) = (texels.cameras(), texels.resolution());
-    Ok(Image::new(width, height * cameras_s * cameras_t, texels.texels().to_vec())?)
+/// All texels of a slab as a picture of one row.
+fn row(texels: &SlabTexels) -> Result<Image<[u8; 4]>> {
+    Ok(Image::new(u32::try_from(texels.texels().len())?, 1, texels.texels().to_vec())?)
 }
 
 /// Who made the file from what.

@@ -9,11 +9,11 @@ use lf_math::{CubeMap, Image, Pinhole, PlanePlacement, TriangleMesh};
 use lf_report::{Figure, Machine, MethodResult, Report};
 use lf_scene::{Capture, capture_cube};
 
-use crate::args::{DemoArgs, Sampling};
-use crate::capture::{capture, encode, metadata};
+use crate::args::{DemoArgs, FileArgs, Sampling};
+use crate::capture::{capture, crop, encode, metadata};
 use crate::device::{CpuSide, GpuSide, open_gpu, or_cpu};
 use crate::frames::{Asked, MethodFrames, ReflectorFrames, Stage, agreement, full_orbit, orbit};
-use crate::info::load;
+use crate::input::load;
 use crate::output::{megabytes, png, print, progress_bar, write, write_exr};
 use crate::pictures::{ERROR_GAIN, difference, middle, sheet, shrunk, strip};
 use crate::sources::{Source, builtin, from_file};
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
     let file = args.out.join(format!("{}.lfslab", source.name()));
     let prepared = prepare(args, source, &file)?;
     // From here on everything comes from the file.
-    let field = load(&file)?;
+    let field = load(&FileArgs::new(&file))?;
     let cpu = CpuSide::new(&field, &prepared.cube)?;
     let gpu = or_cpu(open_gpu(args.cpu).map(|gpu| GpuSide::new(gpu, &field, &prepared.cube, args.size)));
     let stage = Stage { source: &prepared.source, cpu: &cpu, gpu: gpu.as_ref() };
@@ -76,9 +76,10 @@ const PARALLAX_CAPTION: &str = "The middle of the sphere from six eyes 7° apart
 
 /// Captures, encodes, writes the file and takes the environment map.
 fn prepare(args: &DemoArgs, source: Source, file: &Path) -> Result<Prepared> {
-    let (capture, capture_time) = capture(&source, &args.scene.preset.sampling())?;
+    let (mut capture, capture_time) = capture(&source, &args.scene.preset.sampling())?;
+    crop(&mut capture)?;
     let (packed, encode_time, stored_psnr) = encode(&capture, lf_format::TexelEncoding::Bc1, &PackOptions::default())?;
-    let file_bytes = packed.to_writer(metadata(&source)?)?.save(file)?;
+    let file_bytes = packed.save(file, metadata(&source)?)?;
     eprintln!("file     {}: {}", file.display(), megabytes(file_bytes));
     let start = Instant::now();
     let cube = capture_cube(&source.tracer, &source.cell, CUBE_SIZE, CUBE_GRID)?;

@@ -1,71 +1,66 @@
-//! `lfslab info` and `lfslab validate`.
+//! `lfslab info`: what a file holds.
 
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
+use std::collections::BTreeMap;
 
-use anyhow::{Context, Result, bail};
-use lf_compress::PackedLightField;
-use lf_format::{Container, Limits};
+use anyhow::Result;
+use lf_format::{ChunkEntry, SlabTiling, Structure, Tag};
 use lf_math::{SampledAxis, Slab};
+use serde_json::{Value, json};
 
+use crate::args::InfoArgs;
+use crate::input::open;
 use crate::output::{megabytes, print};
 
-/// The bytes of a file, refused before reading if larger than the limits allow.
-pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
-    let context = || format!("cannot read {}", path.display());
-    let file = File::open(path).with_context(context)?;
-    let limit = Limits::default().max_file_bytes;
-    let mut bytes = Vec::new();
-    // One byte more than allowed tells a file that is too large, also where its length is not known beforehand.
-    file.take(limit.saturating_add(1)).read_to_end(&mut bytes).with_context(context)?;
-    if bytes.len() as u64 > limit {
-        bail!("{} is larger than {limit} bytes", path.display());
+pub(crate) fn run(args: &InfoArgs) -> Result<()> {
+    let file = open(&args.input)?;
+    if args.json {
+        return print(&format!("{:#}", to_json(&file)));
     }
-    Ok(bytes)
-}
-
-/// Reads and unpacks a light field.
-pub(crate) fn load(path: &Path) -> Result<PackedLightField> {
-    let bytes = read_file(path)?;
-    let container = Container::parse(&bytes, &Limits::default()).with_context(|| path.display().to_string())?;
-    PackedLightField::read(&container).with_context(|| path.display().to_string())
-}
-
-/// Checks header, directory, checksums, geometry and every tile's packed bytes.
-pub(crate) fn validate(path: &Path) -> Result<()> {
-    let field = load(path)?;
-    let tiles: usize = (0..field.tilings().len()).map(|slab| field.tiles(slab).len()).sum();
-    print(&format!("{}: valid ({} slabs, {tiles} tiles)", path.display(), field.tilings().len()))
-}
-
-/// Prints the structure of a file.
-pub(crate) fn info(path: &Path) -> Result<()> {
-    let bytes = read_file(path)?;
-    let container = Container::parse(&bytes, &Limits::default()).with_context(|| path.display().to_string())?;
-    let (major, minor) = container.version();
-    let mut lines = vec![format!("{}: lfslab {major}.{minor}, {}", path.display(), megabytes(bytes.len() as u64))];
+    let (major, minor) = file.version();
+    let path = args.input.file.display();
+    let mut lines = vec![format!("{path}: lfslab {major}.{minor}, {}", megabytes(file.file_len()))];
     // Escaped, so that a file cannot pose as this program or steer the terminal.
-    lines.extend(container.metadata().iter().map(|(key, value)| format!("{key}: {}", value.escape_debug())));
-    let cell = container.geometry().cell();
+    lines.extend(file.metadata().iter().map(|(key, value)| format!("{key}: {}", value.escape_debug())));
+    let cell = file.geometry().cell();
     lines.push(format!("cell: centre {} m, edges {} m", cell.center(), 2.0 * cell.half_extent()));
-    for (number, slab) in container.geometry().slabs().iter().enumerate() {
+    for (number, slab) in file.geometry().slabs().iter().enumerate() {
         lines.push(format!("slab {number}: {}", describe(slab)));
-        lines.push(storage(&container, number));
+        lines.push(storage(&file, number));
     }
+    let unknown = file.chunks().iter().filter(|entry| !entry.tag.is_known());
+    lines.extend(unknown.map(|entry| format!("{entry}: not known, {} bytes", entry.stored_len)));
     print(&lines.join("\n"))
 }
 
+fn tiles_of(file: &Structure, slab: usize) -> impl Iterator<Item = &ChunkEntry> {
+    file.chunks().iter().filter(move |entry| entry.tag == Tag::TILE && entry.slab as usize == slab)
+}
+
+/// Share of a slab's texels that is stored, percent.
+fn stored_share(tiling: &SlabTiling) -> f64 {
+    let all: f64 = tiling.cameras().into_iter().chain(tiling.resolution()).map(f64::from).product();
+    100.0 * tiling.coverage().texels() as f64 / all
+}
+
 /// How a slab is stored.
-fn storage(container: &Container<'_>, slab: usize) -> String {
-    let tiling = container.tilings()[slab];
-    let ([per_s, per_t], count) = (tiling.cameras_per_tile(), tiling.tile_count());
-    let tiles = (0..count).filter_map(|tile| container.tile(slab, tile));
-    let (stored, raw) =
-        tiles.fold((0, 0), |(stored, raw), tile| (stored + tile.bytes.len() as u64, raw + tile.raw_len));
-    let share = 100.0 * stored as f64 / raw as f64;
+fn storage(file: &Structure, slab: usize) -> String {
+    let tiling = &file.tilings()[slab];
+    let [per_s, per_t] = tiling.cameras_per_tile();
+    let (mut stored, mut raw, mut packings) = (0, 0, BTreeMap::new());
+    for entry in tiles_of(file, slab) {
+        stored += entry.stored_len;
+        raw += entry.raw_len;
+        *packings.entry(format!("{:?}", entry.packing).to_lowercase()).or_insert(0) += 1;
+    }
+    let packings: Vec<String> = packings.into_iter().map(|(packing, tiles)| format!("{tiles} {packing}")).collect();
+    let kept = stored_share(tiling);
     let encoding = format!("{:?}", tiling.encoding()).to_uppercase();
-    format!("  {encoding}, {count} tiles of {per_s}×{per_t} cameras, {stored} of {raw} bytes ({share:.1} %)")
+    let share = 100.0 * stored as f64 / raw as f64;
+    let cut = if kept < 100.0 { format!("{kept:.1} % of the texels, ") } else { String::new() };
+    format!(
+        "  {encoding}, {cut}tiles of {per_s}×{per_t} cameras ({}), {stored} of {raw} bytes ({share:.1} %)",
+        packings.join(", ")
+    )
 }
 
 fn describe(slab: &Slab) -> String {
@@ -80,4 +75,51 @@ fn describe(slab: &Slab) -> String {
         range(slab.st()),
         range(slab.uv()),
     )
+}
+
+/// The structure, but for checksums.
+fn to_json(file: &Structure) -> Value {
+    let cell = file.geometry().cell();
+    let slabs: Vec<Value> = (0..file.tilings().len()).map(|slab| slab_json(file, slab)).collect();
+    let metadata: BTreeMap<&str, &str> = file.metadata().iter().collect();
+    let chunk = |entry: &ChunkEntry| {
+        json!({
+            "tag": entry.tag.to_string(),
+            "critical": entry.critical,
+            "safe_to_copy": entry.safe_to_copy,
+            "packing": format!("{:?}", entry.packing).to_lowercase(),
+            "slab": entry.slab,
+            "tile": entry.tile,
+            "offset": entry.offset,
+            "stored_bytes": entry.stored_len,
+            "raw_bytes": entry.raw_len,
+        })
+    };
+    json!({
+        "version": format!("{}.{}", file.version().0, file.version().1),
+        "file_bytes": file.file_len(),
+        "metadata": metadata,
+        "cell": { "center_m": cell.center().to_array(), "half_extent_m": cell.half_extent().to_array() },
+        "slabs": slabs,
+        "chunks": file.chunks().iter().map(chunk).collect::<Vec<_>>(),
+    })
+}
+
+fn slab_json(file: &Structure, number: usize) -> Value {
+    let (slab, tiling) = (&file.geometry().slabs()[number], &file.tilings()[number]);
+    let axis = |axis: SampledAxis| json!({ "first": axis.first(), "step": axis.step(), "count": axis.count() });
+    let ([s, t], [u, v]) = (slab.st().map(axis), slab.uv().map(axis));
+    json!({
+        "face": slab.face().name(),
+        "plane_m": slab.plane(),
+        "s": s,
+        "t": t,
+        "u": u,
+        "v": v,
+        "focal_depth_m": slab.focal_depth(),
+        "encoding": format!("{:?}", tiling.encoding()).to_uppercase(),
+        "cameras_per_tile": tiling.cameras_per_tile(),
+        "tiles": tiling.tiles(),
+        "stored_percent": stored_share(tiling),
+    })
 }

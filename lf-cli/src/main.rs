@@ -6,14 +6,17 @@
 
 mod args;
 mod capture;
+mod crop;
 mod demo;
 mod device;
 mod frames;
 mod info;
+mod input;
 mod output;
 mod pictures;
 mod render;
 mod sources;
+mod validate;
 
 use std::process::ExitCode;
 
@@ -37,7 +40,8 @@ fn run(command: &Command) -> Result<()> {
         Command::Demo(args) => demo::run(args),
         Command::Capture(args) => capture::run(args),
         Command::Render(args) => render::run(args),
-        Command::Info(args) => info::info(&args.file),
-        Command::Validate(args) => info::validate(&args.file),
+        Command::Info(args) => info::run(args),
+        Command::Validate(args) => validate::run(args),
+        Command::Crop(args) => crop::run(args),
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use glam::Vec3;
 use lf_compress::PackedLightField;
+use lf_format::TexelEncoding;
 use lf_gpu::{Gpu, MirrorMesh, ReflectionPass, SlabTexture, Target};
 use lf_ibr::SlabField;
 use lf_math::{Image, Pinhole, TriangleMesh};
@@ -13,14 +14,14 @@ use crate::args::RenderArgs;
 use crate::capture::MAX_DECODED_BYTES;
 use crate::device::{CpuMethod, GpuMethod, Method, open_gpu, or_cpu};
 use crate::frames::FOV_Y;
-use crate::info::load;
+use crate::input::load;
 use crate::output::{check_writable, png, print, write};
 use crate::pictures::over;
 use crate::sources::{builtin, from_file};
 
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     check_writable(&args.out)?;
-    let field = load(&args.file)?;
+    let field = load(&args.input)?;
     let cell = *field.geometry().cell();
     let (_, mesh) = match args.reflector.as_str() {
         name @ ("sphere" | "teapot") => builtin(name, &cell)?,
@@ -31,10 +32,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let on_gpu = open_gpu(args.cpu).map(|gpu| draw_on_gpu(&gpu, &field, &mesh, &camera));
     let picture = match or_cpu(on_gpu) {
         Some(picture) => picture,
-        None => {
-            let environment = SlabField::new(field.geometry().clone(), field.decode(MAX_DECODED_BYTES)?)?;
-            finish(CpuMethod::new(&environment, &mesh, &camera))?
-        }
+        None => draw_on_cpu(&field, &mesh, &camera)?,
     };
     let grey = Image::filled(args.size, args.size, [40, 40, 44, 255]);
     write(&args.out, &png(&over(&picture, &grey))?)?;
@@ -48,6 +46,16 @@ fn draw_on_gpu(gpu: &Gpu, field: &PackedLightField, mesh: &TriangleMesh, camera:
     let target = Target::new(gpu, camera.width(), camera.height())?;
     let mesh = MirrorMesh::new(gpu, mesh)?;
     finish(GpuMethod { gpu, pass: &pass, target: &target, mesh: &mesh, camera })
+}
+
+fn draw_on_cpu(field: &PackedLightField, mesh: &TriangleMesh, camera: &Pinhole) -> Result<Image<[u8; 4]>> {
+    let geometry = field.geometry().clone();
+    if field.tilings().iter().all(|tiling| tiling.encoding() == TexelEncoding::Rgb16F) {
+        let environment = SlabField::new(geometry, field.decode_linear(MAX_DECODED_BYTES)?)?;
+        return finish(CpuMethod::new(&environment, mesh, camera));
+    }
+    let environment = SlabField::new(geometry, field.decode(MAX_DECODED_BYTES)?)?;
+    finish(CpuMethod::new(&environment, mesh, camera))
 }
 
 fn finish(mut method: impl Method) -> Result<Image<[u8; 4]>> {

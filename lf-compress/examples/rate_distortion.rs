@@ -5,8 +5,8 @@
 //! cargo run --release -p lf-compress --example rate_distortion -- field.lfslab [--every 8] [--quality best]
 //! ```
 //!
-//! prints a table and writes `target/rate-distortion.svg`. The light field must be stored as RGBA8 (`lfslab capture
-//! --encoding rgba8`), and every so many of its tiles are taken. PSNR is over R, G and B, as an independent decoder shows
+//! prints a table and writes `target/rate-distortion.svg`. The light field must be stored as RGBA8 and whole (`lfslab
+//! capture --encoding rgba8 --whole`), and every so many of its tiles are taken. PSNR is over R, G and B, as an independent decoder shows
 //! the blocks; beside each size stands that of one zstd frame a tile of the same blocks, the same position of all cameras
 //! side by side. Times are those of one thread.
 
@@ -100,9 +100,12 @@ fn light_field(arguments: &Arguments) -> Result<Vec<Tile>, Box<dyn Error>> {
         if tiling.encoding() != TexelEncoding::Rgba8 {
             return Err("the light field must be stored as RGBA8: lfslab capture --encoding rgba8".into());
         }
-        let (cameras, size) = (tiling.cameras_per_tile(), tiling.tile_size());
-        let shape = TileShape::new(cameras, [size[0] / cameras[0] / 4, size[1] / cameras[1] / 4])?;
-        for raw in field.tiles(slab).iter().step_by(arguments.every) {
+        if !tiling.coverage().is_whole() {
+            return Err("the light field must hold whole images: lfslab capture --whole".into());
+        }
+        for (number, raw) in tiling.stored_tiles().zip(field.tiles(slab)).step_by(arguments.every) {
+            let [columns, rows] = tiling.block_windows(number);
+            let shape = TileShape::windowed(&columns, &rows)?;
             let texels = raw.as_chunks::<4>().0.iter().map(|&[r, g, b, _]| [r, g, b, 255]).collect();
             tiles.push(Tile { shape, texels, blocks: Vec::new() });
         }

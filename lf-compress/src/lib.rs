@@ -1,7 +1,7 @@
 //! From decoded slabs to the bytes that a file stores and a GPU samples, and back.
 //!
 //! * [`bc1`]: BC1 (DXT1) blocks. Knows nothing of light fields; usable alone.
-//! * [`volume`]: the place of every camera image in one power-of-two volume texture.
+//! * [`volume`]: the place of every camera image in one volume texture.
 //! * [`PackedLightField`]: a light field as encoded tiles, one per volume slice: made from texels or read from a
 //!   container, uploaded to a GPU as it is or decoded again.
 //! * [`tile`]: lossless packing of BC1 tiles for the file, and blocks that pack better.
@@ -11,14 +11,24 @@
 #![forbid(unsafe_code)]
 
 pub mod bc1;
+mod check;
+mod error;
+mod file;
 mod packed;
+mod picture;
+mod recut;
 pub mod tile;
+mod validate;
 pub mod volume;
 mod zstd_tile;
 
+pub use check::check_tile;
+pub use error::PackError;
+pub use file::{decode_into, unpack_into};
 /// The container crate, whose types the packed light field speaks.
 pub use lf_format as format;
-pub use packed::{PackError, PackOptions, PackedLightField};
+pub use packed::{PackOptions, PackedLightField};
+pub use validate::{Finding, Severity, validate};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,24 +1,29 @@
 //! Where each camera image lies in the volume texture (§7 and Fig. 8 of the paper).
 //!
-//! A *slice* is a picture of `cameras_per_slice` neighbouring camera images; a slab fills consecutive slices in the
-//! order `idx.y·groups_s + idx.x`, `idx` being the camera index divided by the cameras per slice; each slab has a *slot*
-//! of equally many slices. All sizes of the volume are powers of two, as the paper's hardware wanted: six slabs of
-//! 32×32 cameras × 128×128 texels take 8 slots of 1024×1024×16 in 1024×1024×128, 64 MiB in BC1.
+//! A *slice* is the picture of a tile: neighbouring camera images, or what is kept of them. A slab fills consecutive slices in
+//! the order `idx.y·groups_s + idx.x`, `idx` being the tile's place in the slab.
+//!
+//! Whole slabs make a volume whose sizes are powers of two, as the paper's hardware wanted, each slab having a *slot* of
+//! equally many slices: six slabs of 32×32 cameras × 128×128 texels take 8 slots of 1024×1024×16 in 1024×1024×128, 64 MiB in
+//! BC1. Cropped slabs would lose to rounding what they gain, and slabs follow each other without gaps.
 
-use lf_math::{LightFieldGeometry, Slab};
+use lf_format::{CameraPlace, SlabTiling};
+use lf_math::{Coverage, Slab};
 use thiserror::Error;
 
 /// Edge length in texels that a slice has where camera images are small enough: the paper's 1024.
 ///
 /// Smaller slices would mean more of them (3D textures end at 2048); larger ones make tiles coarser to load.
 const SLICE_EDGE: u32 = 1024;
+/// Edge that slices of cropped images do not exceed: every device has 3D textures of this size.
+const CROPPED_EDGE: u32 = 2048;
 
 /// The volume would be larger than its coordinates can say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("the packed volume would exceed 2^31 texels along an axis; use fewer cameras or smaller images")]
 pub struct VolumeTooLarge;
 
-/// The place of every texel of a light field in one power-of-two volume.
+/// The place of every texel of a light field in one volume.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct VolumeLayout {
     size: [u32; 3],
@@ -26,12 +31,11 @@ pub struct VolumeLayout {
 }
 
 /// One slab's part of the volume.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SlabLayout {
-    cameras: [u32; 2],
-    resolution: [u32; 2],
-    pitch: [u32; 2],
-    cameras_per_slice: [u32; 2],
+    tiling: SlabTiling,
+    /// For each column and each row of tiles: its number among those that are not empty.
+    ranks: [Vec<Option<u32>>; 2],
     groups: [u32; 2],
     first_slice: u32,
 }
@@ -47,62 +51,71 @@ pub struct Sample {
     pub texel: [u32; 2],
 }
 
-/// How many camera images a slice holds along s and t: the largest power of two that fits in 1024 texels, at least
-/// one, and not more than the grid needs.
+/// How many cameras of a slab share a tile along s and t.
+///
+/// Of whole images the largest power of two that fits in 1024 texels, at least one, and not more than there are. Of
+/// windows as many as waste least where the tiles of a row differ in width, within 2048 texels.
 #[must_use]
-pub fn cameras_per_slice(slab: &Slab) -> [u32; 2] {
-    let [cameras, resolution] = [slab.cameras(), slab.resolution()];
+pub fn cameras_per_tile(slab: &Slab, coverage: &Coverage) -> [u32; 2] {
+    let coverage = coverage.clone().aligned(4);
+    let windows = [coverage.columns(), coverage.rows()];
     [0, 1].map(|i| {
-        let fitting = SLICE_EDGE / padded(resolution[i]).unwrap_or(u32::MAX);
-        let largest = if fitting == 0 { 1 } else { 1 << fitting.ilog2() };
-        cameras[i].checked_next_power_of_two().unwrap_or(u32::MAX).min(largest)
+        let (count, texels) = (slab.cameras()[i], slab.resolution()[i]);
+        let widths: Vec<u32> = windows[i].iter().map(|w| w.len() as u32).collect();
+        if widths.iter().all(|&width| width == texels) {
+            whole_per_tile(count, texels)
+        } else {
+            cropped_per_tile(&widths)
+        }
     })
 }
 
-/// Images start on BC1 block borders, so that no block holds texels of two cameras.
-fn padded(resolution: u32) -> Option<u32> {
-    resolution.checked_next_multiple_of(4)
+fn whole_per_tile(cameras: u32, texels: u32) -> u32 {
+    let fitting = SLICE_EDGE / texels.checked_next_multiple_of(4).unwrap_or(u32::MAX);
+    let largest = if fitting == 0 { 1 } else { 1 << fitting.ilog2() };
+    cameras.min(largest)
+}
+
+/// The number with which tiles as wide as the widest cover least; of equal ones the smallest.
+fn cropped_per_tile(widths: &[u32]) -> u32 {
+    let cost = |per_tile: usize| {
+        let tiles =
+            widths.chunks(per_tile).map(|tile| tile.iter().map(|&w| u64::from(w.next_multiple_of(4))).sum::<u64>());
+        let widest = tiles.max().unwrap_or(0);
+        (per_tile > 1 && widest > u64::from(CROPPED_EDGE), widest * widths.len().div_ceil(per_tile) as u64)
+    };
+    // More cameras than this are wider than the edge, but for empty windows.
+    let most = widths.len().min(CROPPED_EDGE as usize / 4);
+    (1..=most).min_by_key(|&per_tile| cost(per_tile)).unwrap_or(1) as u32
 }
 
 impl VolumeLayout {
-    /// The layout of a light field with [`cameras_per_slice`] of each slab.
+    /// The layout of a light field's slabs, each tile a slice.
     ///
     /// # Errors
     /// If an axis of the volume would reach 2³¹ texels.
-    pub fn new(geometry: &LightFieldGeometry) -> Result<Self, VolumeTooLarge> {
-        Self::with_cameras_per_slice(geometry, |i| cameras_per_slice(&geometry.slabs()[i]))
+    pub fn new(tilings: &[SlabTiling]) -> Result<Self, VolumeTooLarge> {
+        let slabs: Vec<_> = tilings.iter().map(SlabLayout::new).collect();
+        Self::place(slabs).ok_or(VolumeTooLarge)
     }
 
-    /// The layout with given numbers of camera images per slice (at least 1), by position of the slab.
-    ///
-    /// # Errors
-    /// If an axis of the volume would reach 2³¹ texels.
-    pub fn with_cameras_per_slice(
-        geometry: &LightFieldGeometry,
-        cameras_per_slice: impl Fn(usize) -> [u32; 2],
-    ) -> Result<Self, VolumeTooLarge> {
-        let layouts = geometry.slabs().iter().enumerate().map(|(i, slab)| SlabLayout::new(slab, cameras_per_slice(i)));
-        let mut slabs = layouts.collect::<Option<Vec<_>>>().ok_or(VolumeTooLarge)?;
-        let size = Self::place(&mut slabs).ok_or(VolumeTooLarge)?;
-        Ok(Self { size, slabs })
-    }
-
-    /// Gives each slab its slot; returns the size of the volume.
-    fn place(slabs: &mut [SlabLayout]) -> Option<[u32; 3]> {
-        let power_of_two = |f: &dyn Fn(&SlabLayout) -> Option<u32>| {
-            slabs.iter().map(f).try_fold(0, |most, n| Some(n?.max(most)))?.checked_next_power_of_two()
-        };
-        let width = power_of_two(&|slab| slab.slice_size(0))?;
-        let height = power_of_two(&|slab| slab.slice_size(1))?;
-        let slot = power_of_two(&|slab| Some(slab.slices()))?;
-        for (slab, position) in slabs.iter_mut().zip(0..) {
-            slab.first_slice = slot.checked_mul(position)?;
+    /// Gives each slab its slices.
+    fn place(mut slabs: Vec<SlabLayout>) -> Option<Self> {
+        let whole = slabs.iter().all(|slab| slab.tiling.coverage().is_whole());
+        let rounded = |n: u32| if whole { n.checked_next_power_of_two() } else { Some(n) };
+        let largest = |f: &dyn Fn(&SlabLayout) -> u32| slabs.iter().map(f).max().unwrap_or(0);
+        let [width, height] = [0, 1].map(|axis| rounded(largest(&|slab| slab.slice_size()[axis])));
+        let slot = if whole { Some(rounded(largest(&SlabLayout::slices))?) } else { None };
+        let mut depth = 0u32;
+        for slab in &mut slabs {
+            slab.first_slice = depth;
+            depth = depth.checked_add(slot.unwrap_or(slab.slices()))?;
         }
-        let depth = u32::try_from(slabs.len()).ok()?.checked_next_power_of_two()?.checked_mul(slot)?;
-        Some([width, height, depth]).filter(|size| size.iter().all(|&n| n < 1 << 31))
+        let size = [width?, height?, rounded(depth)?];
+        size.iter().all(|&n| n < 1 << 31).then_some(Self { size, slabs })
     }
 
-    /// Width, height and depth in texels, all powers of two.
+    /// Width, height and depth in texels.
     #[must_use]
     pub fn size(&self) -> [u32; 3] {
         self.size
@@ -114,69 +127,72 @@ impl VolumeLayout {
         &self.slabs
     }
 
-    /// Where a sample lies: texel x, y and slice z. `None` for indices outside the light field.
+    /// Where a sample lies: texel x, y and slice z. `None` for indices outside the light field and what is not stored.
     #[must_use]
     pub fn texel(&self, sample: &Sample) -> Option<[u32; 3]> {
         let slab = self.slabs.get(sample.slab)?;
-        let inside = |i: usize| sample.camera[i] < slab.cameras[i] && sample.texel[i] < slab.resolution[i];
-        (inside(0) && inside(1)).then(|| {
-            let place = |i: usize| sample.camera[i] % slab.cameras_per_slice[i] * slab.pitch[i] + sample.texel[i];
-            let [group_s, group_t] = [0, 1].map(|i| sample.camera[i] / slab.cameras_per_slice[i]);
-            [place(0), place(1), slab.first_slice + group_t * slab.groups[0] + group_s]
-        })
+        let CameraPlace { tile, corner, window } = slab.tiling.place(sample.camera)?;
+        let inside = |i: usize| window[i].contains(&sample.texel[i]);
+        (inside(0) && inside(1)).then_some(())?;
+        let place = |i: usize| corner[i] + sample.texel[i] - window[i].start;
+        Some([place(0), place(1), slab.slice(tile)?])
     }
 
-    /// The sample at a texel of the volume; `None` where no camera image lies. Inverse of [`Self::texel`].
+    /// The sample at a texel of the volume; `None` where none is stored. Inverse of [`Self::texel`].
     #[must_use]
     pub fn sample(&self, texel: [u32; 3]) -> Option<Sample> {
-        let inside = |slab: &&SlabLayout| texel[2].checked_sub(slab.first_slice).is_some_and(|z| z < slab.slices());
-        let (slab, part) = self.slabs.iter().enumerate().find(|(_, slab)| inside(slab))?;
-        let slice = texel[2] - part.first_slice;
-        let group = [slice % part.groups[0], slice / part.groups[0]];
-        let image = [0, 1].map(|i| texel[i] / part.pitch[i]);
-        if image[0] >= part.cameras_per_slice[0] || image[1] >= part.cameras_per_slice[1] {
-            return None;
-        }
-        let camera = [0, 1].map(|i| group[i] * part.cameras_per_slice[i] + image[i]);
-        let texel = [0, 1].map(|i| texel[i] % part.pitch[i]);
-        Some(Sample { slab, camera, texel }).filter(|found| self.texel(found).is_some())
+        let within = |slab: &&SlabLayout| texel[2].checked_sub(slab.first_slice).is_some_and(|z| z < slab.slices());
+        let (slab, part) = self.slabs.iter().enumerate().find(|(_, slab)| within(slab))?;
+        let [columns, rows] = part.tiling.cameras_of(part.tile(texel[2])?);
+        let camera = [
+            last_before(columns, |s| part.tiling.column_place(s), texel[0])?,
+            last_before(rows, |t| part.tiling.row_place(t), texel[1])?,
+        ];
+        let CameraPlace { corner, window, .. } = part.tiling.place(camera)?;
+        let at = |i: usize| Some(window[i].start + texel[i].checked_sub(corner[i])?).filter(|u| window[i].contains(u));
+        Some(Sample { slab, camera, texel: [at(0)?, at(1)?] })
     }
 }
 
+/// The last camera of a range whose window begins at or before a texel: those before it begin no later.
+fn last_before(cameras: std::ops::Range<u32>, place: impl Fn(u32) -> u32, texel: u32) -> Option<u32> {
+    cameras.rev().find(|&camera| place(camera) <= texel)
+}
+
 impl SlabLayout {
-    fn new(slab: &Slab, cameras_per_slice: [u32; 2]) -> Option<Self> {
-        let [cameras, resolution] = [slab.cameras(), slab.resolution()];
-        let cameras_per_slice = cameras_per_slice.map(|n| n.max(1));
-        let groups = [0, 1].map(|i| cameras[i].div_ceil(cameras_per_slice[i]));
-        groups[0].checked_mul(groups[1])?;
-        let pitch = [padded(resolution[0])?, padded(resolution[1])?];
-        Some(Self { cameras, resolution, pitch, cameras_per_slice, groups, first_slice: 0 })
+    fn new(tiling: &SlabTiling) -> Self {
+        let [across, down] = tiling.tiles();
+        let filled = |n: u32, extent: &dyn Fn(u32) -> u32| {
+            let mut next = 0..;
+            (0..n).map(|i| if extent(i) > 0 { next.next() } else { None }).collect::<Vec<Option<u32>>>()
+        };
+        let ranks = [filled(across, &|i| tiling.tile_size(i)[0]), filled(down, &|j| tiling.tile_size(j * across)[1])];
+        let groups = [0, 1].map(|i: usize| ranks[i].iter().flatten().count() as u32);
+        Self { tiling: tiling.clone(), ranks, groups, first_slice: 0 }
     }
 
-    /// Texels that the camera images of a slice take along one axis.
-    fn slice_size(&self, axis: usize) -> Option<u32> {
-        self.pitch[axis].checked_mul(self.cameras_per_slice[axis])
+    /// Width and height that its slices need.
+    fn slice_size(&self) -> [u32; 2] {
+        let [across, down] = self.tiling.tiles();
+        [
+            (0..across).map(|i| self.tiling.tile_size(i)[0]).max().unwrap_or(0),
+            (0..down).map(|j| self.tiling.tile_size(j * across)[1]).max().unwrap_or(0),
+        ]
     }
 
-    /// Distance between neighbouring camera images in a slice, texels: the resolution rounded up to whole blocks.
+    /// How the slab is stored.
     #[must_use]
-    pub fn pitch(&self) -> [u32; 2] {
-        self.pitch
+    pub fn tiling(&self) -> &SlabTiling {
+        &self.tiling
     }
 
-    /// Camera images in a slice along s and t.
-    #[must_use]
-    pub fn cameras_per_slice(&self) -> [u32; 2] {
-        self.cameras_per_slice
-    }
-
-    /// Groups of cameras, one per slice, along s and t.
+    /// Slices along s and t: tiles, those without any window left out.
     #[must_use]
     pub fn groups(&self) -> [u32; 2] {
         self.groups
     }
 
-    /// Number of slices used, at most the slot's.
+    /// Number of slices. One whose cameras are all left out is there, but empty.
     #[must_use]
     pub fn slices(&self) -> u32 {
         self.groups[0] * self.groups[1]
@@ -186,5 +202,25 @@ impl SlabLayout {
     #[must_use]
     pub fn first_slice(&self) -> u32 {
         self.first_slice
+    }
+
+    /// The number of a column (axis 0) or row (axis 1) of tiles among those that are not empty.
+    #[must_use]
+    pub fn rank(&self, axis: usize, tile: u32) -> Option<u32> {
+        *self.ranks.get(axis)?.get(tile as usize)?
+    }
+
+    /// The volume slice of a tile; `None` if it holds no window.
+    #[must_use]
+    pub fn slice(&self, tile: u32) -> Option<u32> {
+        let [across, _] = self.tiling.tiles();
+        Some(self.first_slice + self.rank(1, tile / across)? * self.groups[0] + self.rank(0, tile % across)?)
+    }
+
+    /// The tile in a volume slice.
+    fn tile(&self, slice: u32) -> Option<u32> {
+        let place = slice.checked_sub(self.first_slice)?;
+        let find = |axis: usize, rank: u32| self.ranks[axis].iter().position(|&r| r == Some(rank)).map(|i| i as u32);
+        Some(find(1, place / self.groups[0])? * self.tiling.tiles()[0] + find(0, place % self.groups[0])?)
     }
 }

@@ -8,6 +8,8 @@ use zstd::zstd_safe::{self, CParameter};
 pub(crate) const LEVEL: i32 = 9;
 /// Gains a tenth over [`LEVEL`] at many times the time: for tiles that zstd suits.
 pub(crate) const HIGH_LEVEL: i32 = 19;
+/// How a frame begins; a skippable one does not.
+const MAGIC: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
 /// Largest window of a frame: 8 MiB.
 pub(crate) const MAX_WINDOW_LOG: u32 = 23;
 
@@ -20,35 +22,50 @@ pub(crate) fn pack(raw: &[u8], level: i32) -> io::Result<Vec<u8>> {
     compressor.compress(raw)
 }
 
-/// Unpacks a tile that must hold exactly one frame of exactly `raw_len` bytes.
+/// Unpacks one frame that must hold exactly as many bytes as `out`.
 ///
-/// Size and window are compared before anything is allocated, so a hostile frame costs at most `raw_len`.
-pub(crate) fn unpack(frame: &[u8], raw_len: usize) -> Result<Vec<u8>, String> {
-    let stated = content_size(frame)?;
-    if stated != Some(raw_len as u64) {
-        let stated = stated.map_or("no size".to_owned(), |n| format!("{n} bytes"));
-        return Err(format!("is a zstd frame that states {stated} instead of {raw_len} bytes"));
+/// Size and window are compared first, so a hostile frame costs nothing but time.
+pub(crate) fn unpack_into(frame: &[u8], out: &mut [u8]) -> Result<(), String> {
+    let len = out.len();
+    let stated = check(frame)?;
+    if stated != len as u64 {
+        return Err(format!("is a zstd frame that states {stated} instead of {len} bytes"));
     }
-    unpack_up_to(frame, raw_len as u64, 0)
+    let unpacked = zstd::bulk::Decompressor::new().and_then(|mut zstd| zstd.decompress_to_buffer(frame, out));
+    let found = unpacked.map_err(|e| format!("does not unpack: {e}"))?;
+    if found == len { Ok(()) } else { Err(format!("unpacks to {found} instead of {len} bytes")) }
 }
 
 /// Unpacks exactly one frame that states a content size of at most `limit` bytes. The result has room for `slack` more.
 pub(crate) fn unpack_up_to(frame: &[u8], limit: u64, slack: usize) -> Result<Vec<u8>, String> {
-    let Some(stated) = content_size(frame)?.filter(|&stated| stated <= limit) else {
-        return Err(format!("is a zstd frame that does not state a size of at most {limit} bytes"));
-    };
-    if window_size(frame, stated).is_none_or(|window| window > 1 << MAX_WINDOW_LOG) {
-        return Err("is a zstd frame with a window of more than 8 MiB".to_owned());
-    }
-    let frame_len = zstd_safe::find_frame_compressed_size(frame).map_err(|_| "is a broken zstd frame".to_owned())?;
-    if frame_len != frame.len() {
-        return Err(format!("has {} bytes after its zstd frame", frame.len() - frame_len));
+    let stated = check(frame)?;
+    if stated > limit {
+        return Err(format!("is a zstd frame that states {stated} bytes, must state at most {limit}"));
     }
     let stated = usize::try_from(stated).map_err(|_| "does not fit in memory".to_owned())?;
     let mut raw = Vec::with_capacity(stated.saturating_add(slack));
     let unpacked = zstd::bulk::Decompressor::new().and_then(|mut zstd| zstd.decompress_to_buffer(frame, &mut raw));
     let found = unpacked.map_err(|e| format!("does not unpack: {e}"))?;
     if found == stated { Ok(raw) } else { Err(format!("unpacks to {found} instead of {stated} bytes")) }
+}
+
+/// Holds a frame to clause 7.5 of the file format, and returns the content size that it states.
+fn check(frame: &[u8]) -> Result<u64, String> {
+    if frame.first_chunk() != Some(&MAGIC) {
+        return Err("is not a zstd frame".to_owned());
+    }
+    let stated = content_size(frame)?.ok_or("is a zstd frame that does not state its size")?;
+    if window_size(frame, stated).is_none_or(|window| window > 1 << MAX_WINDOW_LOG) {
+        return Err("is a zstd frame with a window of more than 8 MiB".to_owned());
+    }
+    if zstd_safe::get_dict_id_from_frame(frame).is_some() {
+        return Err("is a zstd frame that needs a dictionary".to_owned());
+    }
+    let frame_len = zstd_safe::find_frame_compressed_size(frame).map_err(|_| "is a broken zstd frame".to_owned())?;
+    if frame_len != frame.len() {
+        return Err(format!("has {} bytes after its zstd frame", frame.len() - frame_len));
+    }
+    Ok(stated)
 }
 
 fn content_size(frame: &[u8]) -> Result<Option<u64>, String> {
@@ -69,6 +86,11 @@ mod tests {
     use super::*;
 
     type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+    fn unpack(frame: &[u8], len: usize) -> Result<Vec<u8>, String> {
+        let mut out = vec![0; len];
+        unpack_into(frame, &mut out).map(|()| out)
+    }
 
     fn sample(len: u32) -> Vec<u8> {
         (0..len).map(|i| (i.wrapping_mul(i) >> 7) as u8).collect()

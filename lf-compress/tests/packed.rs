@@ -32,7 +32,7 @@ fn field() -> (LightFieldGeometry, Vec<SlabTexels>) {
 fn rgba_is_lossless_through_a_file() {
     let (geometry, texels) = field();
     let packed = PackedLightField::encode(geometry.clone(), &texels, TexelEncoding::Rgba8, Quality::Standard).unwrap();
-    let bytes = packed.to_writer(Metadata::new()).unwrap().to_bytes().unwrap();
+    let bytes = packed.to_bytes(Metadata::new()).unwrap();
     let read = PackedLightField::read(&Container::parse(&bytes, &Limits::default()).unwrap()).unwrap();
     assert_eq!(read.geometry(), &geometry);
     assert_eq!(read.decode(1 << 30).unwrap(), texels);
@@ -48,7 +48,7 @@ fn bc1_is_close_and_comes_back_bit_for_bit() {
             assert!((0..4).all(|c| a[c].abs_diff(b[c]) <= 40), "{a:?} {b:?}");
         }
     }
-    let bytes = packed.to_writer(Metadata::new()).unwrap().to_bytes().unwrap();
+    let bytes = packed.to_bytes(Metadata::new()).unwrap();
     let read = PackedLightField::read(&Container::parse(&bytes, &Limits::default()).unwrap()).unwrap();
     assert_eq!(read.decode(1 << 30).unwrap(), decoded);
     assert_eq!(read.layout(), packed.layout());
@@ -69,7 +69,7 @@ fn optimised_blocks_make_a_smaller_file_that_comes_back() {
         let options = PackOptions { quality: Quality::Standard, rdo: RdoOptions { lambda, ..RdoOptions::default() } };
         let packed =
             PackedLightField::encode_with(geometry.clone(), &texels, TexelEncoding::Bc1, &options).expect("encodes");
-        let bytes = packed.to_writer(Metadata::new()).expect("packs").to_bytes().expect("writes");
+        let bytes = packed.to_bytes(Metadata::new()).expect("writes");
         let read = PackedLightField::read(&Container::parse(&bytes, &Limits::default()).expect("parses"));
         assert_eq!(read.expect("reads").decode(1 << 30).unwrap(), packed.decode(1 << 30).unwrap());
         bytes.len()
@@ -94,7 +94,7 @@ fn the_file_does_not_depend_on_the_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let packed = PackedLightField::encode(geometry.clone(), &texels, TexelEncoding::Bc1, Quality::Standard);
-            packed.unwrap().to_writer(Metadata::new()).unwrap().to_bytes().unwrap()
+            packed.unwrap().to_bytes(Metadata::new()).unwrap()
         })
     };
     assert_eq!(bytes(1), bytes(3));
@@ -107,30 +107,27 @@ fn stored_bytes_lie_where_the_file_format_says() {
     for (number, slab) in packed.geometry().slabs().iter().enumerate() {
         let ([cameras_s, cameras_t], [width, height]) = (slab.cameras(), slab.resolution());
         let [gs, gt] = packed.tilings()[number].cameras_per_tile();
-        // Clause 7: images padded to whole blocks side by side, tiles with s fastest, four bytes a texel.
+        // Clause 7: images padded to whole blocks side by side, tiles with s fastest, four bytes a texel; the last tile of a row
+        // as wide as the cameras that are left.
         let (pitch_u, pitch_v) = (width.div_ceil(4) * 4, height.div_ceil(4) * 4);
-        let row_bytes = gs * pitch_u * 4;
         let address = |[s, t]: [u32; 2], [u, v]: [u32; 2]| {
             let tile = (t / gt) * cameras_s.div_ceil(gs) + s / gs;
+            let row_bytes = gs.min(cameras_s - s / gs * gs) * pitch_u * 4;
             ((tile as usize), (((t % gt) * pitch_v + v) * row_bytes + ((s % gs) * pitch_u + u) * 4) as usize)
         };
         let read = |(tile, byte): (usize, usize)| packed.tiles(number)[tile][byte..byte + 4].to_vec();
         for (t, s) in (0..cameras_t).flat_map(|t| (0..cameras_s).map(move |s| (t, s))) {
             for (v, u) in (0..pitch_v).flat_map(|v| (0..pitch_u).map(move |u| (v, u))) {
-                let expected = texels[number].texel([s, t], [u.min(width - 1), v.min(height - 1)]);
+                let expected = texels[number].texel([s, t], [u.min(width - 1), v.min(height - 1)]).unwrap();
                 assert_eq!(read(address([s, t], [u, v])), expected, "slab {number}, camera {s} {t}, texel {u} {v}");
                 if u < width && v < height {
                     let sample = lf_compress::volume::Sample { slab: number, camera: [s, t], texel: [u, v] };
                     let [x, y, z] = packed.layout().texel(&sample).unwrap();
                     let slice = z - packed.layout().slabs()[number].first_slice();
+                    let row_bytes = packed.tilings()[number].tile_size(slice)[0] * 4;
                     assert_eq!(address([s, t], [u, v]), (slice as usize, (y * row_bytes + 4 * x) as usize));
                 }
             }
-        }
-        // Cameras that a tile has room for but the grid has not are zero.
-        let absent = cameras_s.next_multiple_of(gs);
-        for s in cameras_s..absent {
-            assert_eq!(read(address([s, 0], [0, 0])), [0; 4]);
         }
     }
 }
@@ -170,10 +167,10 @@ fn tiles_that_do_not_shrink_are_stored_plainly() {
         })
         .collect();
     let packed = PackedLightField::encode(geometry, &noise, TexelEncoding::Bc1, Quality::Fast).unwrap();
-    let bytes = packed.to_writer(Metadata::new()).unwrap().to_bytes().unwrap();
+    let bytes = packed.to_bytes(Metadata::new()).unwrap();
     let container = Container::parse(&bytes, &Limits::default()).unwrap();
     let packings: std::collections::HashSet<_> =
-        container.chunks().map(|chunk| format!("{:?}", chunk.packing)).collect();
+        container.chunks().iter().map(|chunk| format!("{:?}", chunk.packing)).collect();
     assert!(packings.contains("None"));
     assert_eq!(PackedLightField::read(&container).unwrap().decode(1 << 30).unwrap(), packed.decode(1 << 30).unwrap());
 }

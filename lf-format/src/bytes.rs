@@ -1,20 +1,21 @@
 //! Checked access to bytes that nobody has vouched for.
 
-use std::fmt;
+use alloc::format;
+use core::fmt;
 
-use crate::FormatError;
+use crate::{FormatError, Rule};
 
 /// Reads little-endian values one after the other, and knows where in the file they are.
 pub(crate) struct Cursor<'a> {
     rest: &'a [u8],
     offset: u64,
-    clause: &'static str,
+    rule: Rule,
 }
 
 impl<'a> Cursor<'a> {
-    /// A cursor over `bytes`, which begin at `offset` in the file; `clause` is cited when they end too early.
-    pub(crate) fn new(bytes: &'a [u8], offset: u64, clause: &'static str) -> Self {
-        Self { rest: bytes, offset, clause }
+    /// A cursor over `bytes`, which begin at `offset` in the file; `rule` is broken when they end too early.
+    pub(crate) fn new(bytes: &'a [u8], offset: u64, rule: Rule) -> Self {
+        Self { rest: bytes, offset, rule }
     }
 
     /// Where in the file the next byte is.
@@ -61,17 +62,17 @@ impl<'a> Cursor<'a> {
     }
 
     /// `N` reserved bytes, which must be zero.
-    pub(crate) fn reserved<const N: usize>(&mut self, clause: &'static str) -> Result<(), FormatError> {
+    pub(crate) fn reserved<const N: usize>(&mut self, rule: Rule) -> Result<(), FormatError> {
         let at = self.offset;
         let reserved = self.array::<N>()?;
-        zeros(&reserved, at, clause, "a reserved byte")
+        zeros(&reserved, at, rule, "a reserved byte")
     }
 
     /// Makes sure that nothing is left.
     pub(crate) fn finish(self) -> Result<(), FormatError> {
         match self.rest.len() {
             0 => Ok(()),
-            left => Err(FormatError::malformed(self.offset, self.clause, format!("{left} bytes too many"))),
+            left => Err(FormatError::malformed(self.offset, self.rule, format!("{left} bytes too many"))),
         }
     }
 
@@ -82,7 +83,7 @@ impl<'a> Cursor<'a> {
 
     fn too_short(&self, wanted: usize) -> FormatError {
         let left = self.rest.len();
-        FormatError::malformed(self.offset, self.clause, format!("{wanted} bytes are needed here, {left} are left"))
+        FormatError::malformed(self.offset, self.rule, format!("{wanted} bytes are needed here, {left} are left"))
     }
 }
 
@@ -94,10 +95,10 @@ pub(crate) fn range(bytes: &[u8], offset: u64, len: u64) -> Option<&[u8]> {
 }
 
 /// Makes sure that `bytes`, which begin at `offset` in the file, are all zero.
-pub(crate) fn zeros(bytes: &[u8], offset: u64, clause: &'static str, what: &str) -> Result<(), FormatError> {
+pub(crate) fn zeros(bytes: &[u8], offset: u64, rule: Rule, what: &str) -> Result<(), FormatError> {
     match bytes.iter().position(|&byte| byte != 0) {
         None => Ok(()),
-        Some(i) => Err(FormatError::malformed(offset.saturating_add(i as u64), clause, format!("{what} is not zero"))),
+        Some(i) => Err(FormatError::malformed(offset.saturating_add(i as u64), rule, format!("{what} is not zero"))),
     }
 }
 
@@ -106,12 +107,12 @@ pub(crate) fn checksum(
     stored: u64,
     computed: u64,
     offset: u64,
-    clause: &'static str,
+    rule: Rule,
     name: fmt::Arguments<'_>,
 ) -> Result<(), FormatError> {
     if stored == computed {
         return Ok(());
     }
     let what = format!("the checksum of {name} is {computed:016x}, stored is {stored:016x}");
-    Err(FormatError::malformed(offset, clause, what))
+    Err(FormatError::malformed(offset, rule, what))
 }

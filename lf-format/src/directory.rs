@@ -1,15 +1,16 @@
 //! The list of chunks that follows the header (spec §4).
 
-use std::collections::BTreeSet;
-use std::fmt;
+use alloc::format;
+use alloc::vec::Vec;
+use core::fmt;
 
 use xxhash_rust::xxh64::{Xxh64, xxh64};
 
-use crate::bytes::{Cursor, checksum, range, zeros};
+use crate::bytes::{Cursor, checksum};
 use crate::header::{HEADER_LEN, Header};
-use crate::{FormatError, Limits};
+use crate::{FormatError, Packing, Rule};
 
-const ENTRY_LEN: usize = 48;
+pub(crate) const ENTRY_LEN: usize = 48;
 /// Payloads begin at multiples of this many bytes, which suits the alignment rules of every GPU copy.
 const ALIGNMENT: u64 = 64;
 const CRITICAL: u16 = 1;
@@ -24,6 +25,10 @@ impl Tag {
     pub const GEOM: Self = Self(*b"GEOM");
     /// Metadata.
     pub const META: Self = Self(*b"META");
+    /// The windows of a slab's images.
+    pub const CROP: Self = Self(*b"CROP");
+    /// The cameras of a slab that are stored.
+    pub const MASK: Self = Self(*b"MASK");
     /// One tile of one slab.
     pub const TILE: Self = Self(*b"TILE");
 
@@ -33,10 +38,39 @@ impl Tag {
         self.0
     }
 
+    /// A tag for private use: three more ASCII letters or digits after a lower-case letter.
+    ///
+    /// # Errors
+    /// [`FormatError::InvalidArgument`] for anything else.
+    pub fn private(tag: [u8; 4]) -> Result<Self, FormatError> {
+        if tag[0].is_ascii_lowercase() && tag.iter().all(u8::is_ascii_alphanumeric) {
+            return Ok(Self(tag));
+        }
+        Err(FormatError::argument("a private tag is a lower-case letter and three ASCII letters or digits"))
+    }
+
+    /// Where chunks of this kind stand in the order of the directory (spec §4.10).
+    pub(crate) fn rank(self) -> u8 {
+        match self {
+            Self::GEOM => 0,
+            Self::META => 1,
+            Self::CROP => 2,
+            Self::MASK => 3,
+            Self::TILE => 4,
+            _ => 5,
+        }
+    }
+
+    /// Whether this version knows the kind.
+    #[must_use]
+    pub fn is_known(self) -> bool {
+        self.flags().is_some()
+    }
+
     /// The flags that a chunk of this kind must have; `None` for kinds this version does not know.
     fn flags(self) -> Option<u16> {
         match self {
-            Self::GEOM | Self::TILE => Some(CRITICAL),
+            Self::GEOM | Self::CROP | Self::MASK | Self::TILE => Some(CRITICAL),
             Self::META => Some(SAFE_TO_COPY),
             _ => None,
         }
@@ -46,41 +80,6 @@ impl Tag {
 impl fmt::Display for Tag {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.into_iter().try_for_each(|byte| write!(f, "{}", char::from(byte)))
-    }
-}
-
-/// How the bytes of a chunk are packed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Packing {
-    /// Not at all: stored are the raw bytes.
-    None,
-    /// One zstd frame (spec §7.5).
-    Zstd,
-    /// BC1 blocks in the tile codec (spec §7.8). Only tiles of BC1 slabs have it.
-    Tile,
-    /// In a way that this version does not know, by its number in the file. Only chunks that a reader skips have it,
-    /// never a tile.
-    Unknown(u8),
-}
-
-impl Packing {
-    fn id(self) -> u8 {
-        match self {
-            Self::None => 0,
-            Self::Zstd => 1,
-            Self::Tile => 2,
-            Self::Unknown(id) => id,
-        }
-    }
-
-    fn from_id(id: u8) -> Self {
-        match id {
-            0 => Self::None,
-            1 => Self::Zstd,
-            2 => Self::Tile,
-            _ => Self::Unknown(id),
-        }
     }
 }
 
@@ -106,32 +105,37 @@ pub struct ChunkEntry {
     pub stored_len: u64,
     /// Bytes of the payload unpacked.
     pub raw_len: u64,
-    checksum: u64,
+    pub(crate) checksum: u64,
 }
 
 impl ChunkEntry {
-    /// The entry of a chunk of a known kind, not yet placed in a file.
-    pub(crate) fn new(tag: Tag, packing: Packing, [slab, tile]: [u32; 2], stored: &[u8], raw_len: u64) -> Self {
+    /// The entry of a chunk of a known kind that begins at `offset`.
+    pub(crate) fn new(
+        tag: Tag,
+        packing: Packing,
+        [slab, tile]: [u32; 2],
+        offset: u64,
+        stored: &[u8],
+        raw_len: u64,
+    ) -> Self {
         let flags = tag.flags().unwrap_or(0);
-        let mut entry = Self {
-            tag,
-            critical: flags & CRITICAL != 0,
-            safe_to_copy: flags & SAFE_TO_COPY != 0,
-            packing,
-            slab,
-            tile,
-            offset: 0,
-            stored_len: stored.len() as u64,
-            raw_len,
-            checksum: 0,
-        };
-        entry.checksum = entry.compute_checksum(stored);
-        entry
+        let (critical, safe_to_copy) = (flags & CRITICAL != 0, flags & SAFE_TO_COPY != 0);
+        let stored_len = stored.len() as u64;
+        let entry = Self { tag, critical, safe_to_copy, packing, slab, tile, offset, stored_len, raw_len, checksum: 0 };
+        entry.sealed(stored)
     }
 
-    /// The stored bytes of this chunk. All of them, as [`check_layout`] has made sure that they lie within the file.
-    pub(crate) fn payload<'a>(&self, file: &'a [u8]) -> &'a [u8] {
-        range(file, self.offset, self.stored_len).unwrap_or_default()
+    /// The entry with the checksum of its payload.
+    pub(crate) fn sealed(mut self, stored: &[u8]) -> Self {
+        self.checksum = self.compute_checksum(stored);
+        self
+    }
+
+    /// Compares the checksum with that of the payload; `index` is the entry's number in the directory.
+    pub(crate) fn verify(&self, index: usize, stored: &[u8]) -> Result<(), FormatError> {
+        let name = format_args!("{self} bytes {}..{}", self.offset, self.end());
+        let at = entry_offset(index).saturating_add(40);
+        checksum(self.checksum, self.compute_checksum(stored), at, Rule::Checksum, name)
     }
 
     /// Where the payload ends, bytes from the start of the file.
@@ -158,7 +162,7 @@ impl ChunkEntry {
         hash.digest()
     }
 
-    fn write(&self, out: &mut Vec<u8>) {
+    pub(crate) fn write(&self, out: &mut Vec<u8>) {
         out.extend(self.identity());
         for value in [self.offset, self.stored_len, self.raw_len, self.checksum] {
             out.extend(value.to_le_bytes());
@@ -170,7 +174,7 @@ impl ChunkEntry {
         let tag = parse_tag(cursor)?;
         let flags = parse_flags(cursor, tag)?;
         let packing = parse_packing(cursor, tag)?;
-        cursor.reserved::<1>("§4.9")?;
+        cursor.reserved::<1>(Rule::EntryReserved)?;
         let entry = Self {
             tag,
             critical: flags & CRITICAL != 0,
@@ -189,27 +193,30 @@ impl ChunkEntry {
 
     /// The rules between the fields of the entry that begins at `at`.
     fn check_fields(&self, at: u64) -> Result<(), FormatError> {
-        if self.stored_len == 0 {
-            return Err(FormatError::malformed(at.saturating_add(24), "§4.6", format!("{self} is empty")));
-        }
         if self.packing == Packing::None && self.raw_len != self.stored_len {
             let (raw, stored) = (self.raw_len, self.stored_len);
             let what = format!("{self} is not packed, but has {stored} stored and {raw} raw bytes");
-            return Err(FormatError::malformed(at.saturating_add(32), "§4.7", what));
+            return Err(FormatError::malformed(at.saturating_add(32), Rule::RawLength, what));
         }
-        if [Tag::GEOM, Tag::META].contains(&self.tag) { self.check_single(at) } else { Ok(()) }
+        if !self.tag.is_known() || self.tag == Tag::TILE {
+            return Ok(());
+        }
+        if self.packing != Packing::None {
+            let what = format!("{self} is packed, must not be");
+            return Err(FormatError::malformed(at.saturating_add(6), Rule::Packing, what));
+        }
+        let no_slab = [Tag::GEOM, Tag::META].contains(&self.tag) && self.slab != 0;
+        if no_slab || self.tile != 0 {
+            let field = if no_slab { 8 } else { 12 };
+            let what = format!("{self} is for slab {} and tile {}, must not be", self.slab, self.tile);
+            return Err(FormatError::malformed(at.saturating_add(field), Rule::Subject, what));
+        }
+        Ok(())
     }
 
-    /// The rules for a chunk that a file has once.
-    fn check_single(&self, at: u64) -> Result<(), FormatError> {
-        let wrong = [(6, self.packing != Packing::None), (8, self.slab != 0), (12, self.tile != 0)];
-        match wrong.into_iter().find(|&(_, wrong)| wrong) {
-            None => Ok(()),
-            Some((field, _)) => {
-                let what = format!("{self} must be unpacked, with slab and tile 0");
-                Err(FormatError::malformed(at.saturating_add(field), "§4.4", what))
-            }
-        }
+    /// What the order of the directory goes by.
+    pub(crate) fn key(&self) -> (u8, Tag, u32, u32) {
+        (self.tag.rank(), self.tag, self.slab, self.tile)
     }
 }
 
@@ -218,6 +225,7 @@ impl fmt::Display for ChunkEntry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.tag {
             Tag::GEOM | Tag::META => write!(f, "chunk {}", self.tag),
+            Tag::CROP | Tag::MASK => write!(f, "chunk {} (slab {})", self.tag, self.slab),
             tag => write!(f, "chunk {tag} (slab {}, tile {})", self.slab, self.tile),
         }
     }
@@ -229,23 +237,25 @@ fn parse_tag(cursor: &mut Cursor<'_>) -> Result<Tag, FormatError> {
     if tag.iter().all(u8::is_ascii_alphanumeric) {
         return Ok(Tag(tag));
     }
-    Err(FormatError::malformed(at, "§4.1", format!("a chunk's tag is {tag:02x?}, must be ASCII letters and digits")))
+    Err(FormatError::malformed(at, Rule::Tag, format!("a chunk's tag is {tag:02x?}, must be ASCII letters and digits")))
 }
 
 fn parse_flags(cursor: &mut Cursor<'_>, tag: Tag) -> Result<u16, FormatError> {
     let (at, flags) = (cursor.offset(), cursor.u16()?);
     match tag.flags() {
         Some(known) if known == flags => Ok(flags),
-        Some(known) => {
-            Err(FormatError::malformed(at, "§4.2", format!("the flags of a {tag} chunk are {flags}, must be {known}")))
-        }
+        Some(known) => Err(FormatError::malformed(
+            at,
+            Rule::Flags,
+            format!("the flags of a {tag} chunk are {flags}, must be {known}"),
+        )),
         None if flags == CRITICAL => {
-            Err(FormatError::unsupported(at, "§4.2", format!("it has a critical chunk {tag}")))
+            Err(FormatError::unsupported(at, Rule::Critical, format!("it has a critical chunk {tag}")))
         }
         None if flags & !SAFE_TO_COPY == 0 => Ok(flags),
         None => Err(FormatError::malformed(
             at,
-            "§4.2",
+            Rule::Flags,
             format!("the flags of a {tag} chunk are {flags}, must be 0, 1 or 2"),
         )),
     }
@@ -256,32 +266,30 @@ fn parse_packing(cursor: &mut Cursor<'_>, tag: Tag) -> Result<Packing, FormatErr
     let (at, packing) = (cursor.offset(), Packing::from_id(cursor.u8()?));
     match packing {
         Packing::Unknown(id) if tag.flags().is_some() => {
-            Err(FormatError::unsupported(at, "§4.3", format!("a {tag} chunk uses packing {id}")))
+            Err(FormatError::unsupported(at, Rule::Packing, format!("a {tag} chunk uses packing {id}")))
         }
         _ => Ok(packing),
     }
 }
 
-/// Reads the directory, and makes sure that its chunks cover the file and that all checksums are right.
-pub(crate) fn parse(file: &[u8], header: &Header, limits: &Limits) -> Result<Vec<ChunkEntry>, FormatError> {
-    let count = header.entry_count;
-    limits.entries(count.into())?;
-    let stored = range(file, HEADER_LEN as u64, u64::from(count) * ENTRY_LEN as u64).ok_or_else(|| {
-        FormatError::malformed(32, "§3.5", format!("{count} directory entries do not fit into {} bytes", file.len()))
-    })?;
-    checksum(
-        header.directory_checksum,
-        xxh64(stored, 0),
-        40,
-        "§3.7",
-        format_args!("the directory of {count} entries"),
-    )?;
-    let mut cursor = Cursor::new(stored, HEADER_LEN as u64, "§4");
-    let entries = (0..count).map(|_| ChunkEntry::parse(&mut cursor)).collect::<Result<Vec<_>, _>>()?;
-    check_unique(&entries)?;
-    check_layout(file, &entries)?;
-    check_payloads(file, &entries)?;
-    Ok(entries)
+/// Reads the directory, given its bytes, and makes sure that its chunks are in order and cover the file.
+pub(crate) fn parse(stored: &[u8], header: &Header) -> Result<Vec<ChunkEntry>, FormatError> {
+    let name = format_args!("the directory of {} entries", header.entry_count);
+    checksum(header.directory_checksum, xxh64(stored, 0), 40, Rule::DirectoryChecksum, name)?;
+    let mut cursor = Cursor::new(stored, HEADER_LEN as u64, Rule::EntryCount);
+    let mut entries = Vec::with_capacity(header.entry_count as usize);
+    let mut end = entry_offset(header.entry_count as usize);
+    for index in 0..header.entry_count as usize {
+        let entry = ChunkEntry::parse(&mut cursor)?;
+        check_order(index, entries.last(), &entry)?;
+        check_place(index, &entry, end, header.file_len)?;
+        end = entry.end();
+        entries.push(entry);
+    }
+    if end == header.file_len {
+        return Ok(entries);
+    }
+    Err(FormatError::malformed(end, Rule::Tail, "there are bytes after the last chunk"))
 }
 
 /// Where an entry, given by its number, begins.
@@ -289,64 +297,42 @@ pub(crate) fn entry_offset(index: usize) -> u64 {
     (index as u64).saturating_mul(ENTRY_LEN as u64).saturating_add(HEADER_LEN as u64)
 }
 
-fn check_unique(entries: &[ChunkEntry]) -> Result<(), FormatError> {
-    let mut seen = BTreeSet::new();
-    match entries.iter().position(|entry| !seen.insert((entry.tag, entry.slab, entry.tile))) {
-        None => Ok(()),
-        Some(i) => Err(FormatError::malformed(entry_offset(i), "§4.4", "a chunk is listed twice")),
-    }
+fn check_order(index: usize, before: Option<&ChunkEntry>, entry: &ChunkEntry) -> Result<(), FormatError> {
+    let single = [Tag::GEOM, Tag::META].contains(&entry.tag);
+    let what = match before {
+        None if entry.tag == Tag::GEOM => return Ok(()),
+        None => format!("the first chunk is {entry}, must be GEOM"),
+        Some(before) if before.key() < entry.key() && !(single && before.tag == entry.tag) => return Ok(()),
+        Some(before) => format!("{entry} must not stand after {before}"),
+    };
+    Err(FormatError::malformed(entry_offset(index), Rule::Order, what))
 }
 
-/// Every byte after the directory belongs to one chunk or is padding.
-fn check_layout(file: &[u8], entries: &[ChunkEntry]) -> Result<(), FormatError> {
-    let mut end = entry_offset(entries.len());
-    for (i, entry) in entries.iter().enumerate() {
-        let expected = aligned(end);
-        if entry.offset != expected {
-            let what = format!("{entry} is at {}, must be at {expected}", entry.offset);
-            return Err(FormatError::malformed(entry_offset(i).saturating_add(16), "§4.5", what));
-        }
-        if entry.end() > file.len() as u64 {
-            let what = format!("{entry} reaches beyond the file");
-            return Err(FormatError::malformed(entry_offset(i).saturating_add(24), "§4.6", what));
-        }
-        let padding = range(file, end, expected.saturating_sub(end)).unwrap_or_default();
-        zeros(padding, end, "§4.5", "a padding byte")?;
-        end = entry.end();
+/// The payload comes right after what ends at `end`, with the least padding, and ends within the file.
+fn check_place(index: usize, entry: &ChunkEntry, end: u64, file_len: u64) -> Result<(), FormatError> {
+    let (at, expected) = (entry_offset(index), aligned(end));
+    if entry.offset != expected {
+        let what = format!("{entry} is at {}, must be at {expected}", entry.offset);
+        return Err(FormatError::malformed(at.saturating_add(16), Rule::Offset, what));
     }
-    if end == file.len() as u64 {
-        return Ok(());
-    }
-    Err(FormatError::malformed(end, "§4.5", "there are bytes after the last chunk"))
-}
-
-fn check_payloads(file: &[u8], entries: &[ChunkEntry]) -> Result<(), FormatError> {
-    for (i, entry) in entries.iter().enumerate() {
-        let computed = entry.compute_checksum(entry.payload(file));
-        let name = format_args!("{entry} bytes {}..{}", entry.offset, entry.end());
-        checksum(entry.checksum, computed, entry_offset(i).saturating_add(40), "§4.8", name)?;
-    }
-    Ok(())
+    let what = match entry.offset.checked_add(entry.stored_len) {
+        Some(end) if end <= file_len && entry.stored_len > 0 => return Ok(()),
+        _ if entry.stored_len == 0 => format!("{entry} is empty"),
+        _ => format!("{entry} reaches beyond the file"),
+    };
+    Err(FormatError::malformed(at.saturating_add(24), Rule::StoredLength, what))
 }
 
 /// The first place at or after `end` where a payload may begin.
-fn aligned(end: u64) -> u64 {
+pub(crate) fn aligned(end: u64) -> u64 {
     end.div_ceil(ALIGNMENT).saturating_mul(ALIGNMENT)
 }
 
-/// Gives every chunk its place, in order; returns the length of the file.
-pub(crate) fn place<'e>(entries: impl ExactSizeIterator<Item = &'e mut ChunkEntry>) -> u64 {
-    let start = entry_offset(entries.len());
-    entries.fold(start, |end, entry| {
-        entry.offset = aligned(end);
-        entry.end()
-    })
-}
-
-/// The directory of placed chunks, and its checksum.
-pub(crate) fn to_bytes<'e>(entries: impl Iterator<Item = &'e ChunkEntry>) -> (Vec<u8>, u64) {
-    let mut out = Vec::new();
-    entries.for_each(|entry| entry.write(&mut out));
+/// The directory, and its checksum.
+#[cfg(feature = "std")]
+pub(crate) fn to_bytes(entries: &[ChunkEntry]) -> (Vec<u8>, u64) {
+    let mut out = Vec::with_capacity(entries.len() * ENTRY_LEN);
+    entries.iter().for_each(|entry| entry.write(&mut out));
     let checksum = xxh64(&out, 0);
     (out, checksum)
 }

@@ -1,18 +1,24 @@
-//! The `META` chunk: what people want to know about a file (spec §6).
+//! The `META` chunk: what people want to know about a file (spec §8).
 
-use std::collections::BTreeMap;
+use alloc::borrow::ToOwned;
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
 
-use crate::FormatError;
 use crate::bytes::Cursor;
+use crate::{FormatError, Rule};
 
 const MAX_KEY_LEN: usize = 64;
 const MAX_VALUE_LEN: usize = 64 << 10;
+/// Bytes of the whole chunk.
+pub(crate) const MAX_LEN: u64 = 1 << 20;
 
 /// Text values by key, in the order of the keys.
 ///
 /// Keys are 1 to 64 bytes of `a`–`z`, `0`–`9`, `.`, `_` and `-`; values are at most 64 KiB of UTF-8 without
 /// ASCII control characters other than tab and line feed, so that they can be shown in a terminal. The specification
-/// names some keys (`generator`, `scene`, `license`, `created-by-preset`); others are free. Nothing in here changes how
+/// names some keys, such as `generator`, `scene` and `license`; others are free. Nothing in here changes how
 /// a file is rendered.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Metadata(BTreeMap<String, String>);
@@ -54,11 +60,11 @@ impl Metadata {
 
     /// Reads the chunk's payload, which begins at `offset` in the file.
     pub(crate) fn parse(payload: &[u8], offset: u64) -> Result<Self, FormatError> {
-        let mut cursor = Cursor::new(payload, offset, "§6");
+        let mut cursor = Cursor::new(payload, offset, Rule::MetadataOrder);
         let at = cursor.offset();
         let count = cursor.u32()?;
         if count == 0 {
-            return Err(FormatError::malformed(at, "§6.1", "there is a META chunk without entries"));
+            return Err(FormatError::malformed(at, Rule::MetadataCount, "there is a META chunk without entries"));
         }
         let mut metadata = Self::new();
         for _ in 0..count {
@@ -71,11 +77,15 @@ impl Metadata {
     fn parse_entry(&mut self, cursor: &mut Cursor<'_>) -> Result<(), FormatError> {
         let at = cursor.offset();
         let (key_len, value_len) = (cursor.u16()?, cursor.u32()?);
-        let key = parse_text(cursor, key_len.into(), "§6.3", check_key)?;
+        let key = parse_text(cursor, key_len.into(), Rule::MetadataKey, check_key)?;
         if self.0.last_key_value().is_some_and(|(last, _)| *last >= key) {
-            return Err(FormatError::malformed(at, "§6.2", format!("the key {key} is not in ascending order")));
+            return Err(FormatError::malformed(
+                at,
+                Rule::MetadataOrder,
+                format!("the key {key} is not in ascending order"),
+            ));
         }
-        let value = parse_text(cursor, value_len as usize, "§6.4", check_value)?;
+        let value = parse_text(cursor, value_len as usize, Rule::MetadataValue, check_value)?;
         self.0.insert(key, value);
         Ok(())
     }
@@ -100,13 +110,13 @@ impl Metadata {
 fn parse_text(
     cursor: &mut Cursor<'_>,
     len: usize,
-    clause: &'static str,
+    rule: Rule,
     check: impl Fn(&str) -> Result<(), &'static str>,
 ) -> Result<String, FormatError> {
     let at = cursor.offset();
-    let text = std::str::from_utf8(cursor.bytes(len)?)
-        .map_err(|error| FormatError::malformed(at, clause, format!("text is not UTF-8: {error}")))?;
-    check(text).map_err(|what| FormatError::malformed(at, clause, what))?;
+    let text = core::str::from_utf8(cursor.bytes(len)?)
+        .map_err(|error| FormatError::malformed(at, rule, format!("text is not UTF-8: {error}")))?;
+    check(text).map_err(|what| FormatError::malformed(at, rule, what))?;
     Ok(text.to_owned())
 }
 

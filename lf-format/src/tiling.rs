@@ -1,107 +1,90 @@
-//! How the camera images of a slab are cut into tiles (spec §7).
+//! How the camera images of a slab are cut into tiles (spec §7.1 and §7.2).
 
-use lf_math::Slab;
+use alloc::vec::Vec;
+use core::ops::Range;
 
-use crate::{FormatError, Packing};
+use lf_math::{Coverage, Slab};
 
-/// Edge of a BC1 block in texels. Images are padded to multiples of it in either encoding, so that re-encoding a file
-/// moves no texel.
-const BLOCK: u32 = 4;
+use crate::geometry::check_cameras_per_tile;
+use crate::{FormatError, TexelEncoding};
 
-/// How texels are stored in a raw tile.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum TexelEncoding {
-    /// Opaque BC1 (DXT1) blocks, 4×4 texels in 8 bytes (spec §7.3).
-    Bc1,
-    /// Four bytes a texel: red, green, blue, 255 (spec §7.4).
-    Rgba8,
-}
+/// Edge of a BC1 block in texels. Windows are whole blocks in every encoding, so that re-encoding a file moves no texel.
+pub(crate) const BLOCK: u32 = 4;
 
-impl TexelEncoding {
-    pub(crate) fn id(self) -> u8 {
-        match self {
-            Self::Bc1 => 1,
-            Self::Rgba8 => 2,
-        }
-    }
-
-    pub(crate) fn from_id(id: u8) -> Option<Self> {
-        [Self::Bc1, Self::Rgba8].into_iter().find(|encoding| encoding.id() == id)
-    }
-
-    /// Whether tiles of this encoding may be packed so.
-    pub(crate) fn allows(self, packing: Packing) -> bool {
-        self == Self::Bc1 || packing != Packing::Tile
-    }
-
-    /// Bytes of 4×4 texels.
-    fn block_len(self) -> u64 {
-        match self {
-            Self::Bc1 => 8,
-            Self::Rgba8 => 64,
-        }
-    }
-}
-
-/// How one slab is stored: its texel encoding, and how many neighbouring cameras share a tile.
+/// How one slab is stored: its texel encoding, what is kept of its images, and how many neighbouring cameras share a
+/// tile.
 ///
-/// Tile (i, j), number `j·tiles_s + i`, holds cameras `i·gs … (i+1)·gs − 1` along s and likewise along t, where
-/// `[gs, gt]` are the cameras per tile. Unpacked it is one picture: camera (s, t) has its first texel at
-/// `((s mod gs)·pitch_u, (t mod gt)·pitch_v)`, where the pitch is the image resolution rounded up to a multiple of 4.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Tile (i, j), number `j·tiles_s + i`, holds the cameras from `[i·gs, j·gt]` on, where `[gs, gt]` are the cameras per tile,
+/// as far as there are any. Unpacked it is one picture: the windows of its cameras, in whole blocks of 4×4 texels, beside
+/// and below each other without gaps. A tile of which no camera is stored is not in the file.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SlabTiling {
     encoding: TexelEncoding,
-    cameras: [u32; 2],
-    resolution: [u32; 2],
     cameras_per_tile: [u32; 2],
-    tiles: [u32; 2],
-    tile_count: u32,
-    image_pitch: [u32; 2],
-    tile_size: [u32; 2],
-    raw_len: u64,
+    coverage: Coverage,
+    axes: [Axis; 2],
+}
+
+/// One axis of the cut: columns of cameras along s with windows along u, or rows along t with windows along v.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Axis {
+    /// Where the window of each camera begins in its tile's picture, texels.
+    places: Vec<u32>,
+    /// How many texels the picture of each tile has.
+    extents: Vec<u32>,
+}
+
+/// Where the window of one camera lies.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CameraPlace {
+    /// The number of its tile.
+    pub tile: u32,
+    /// The place [x, y] of the window's first texel in the tile's picture, x to the right and y down.
+    pub corner: [u32; 2],
+    /// The window along u and v, in texels of the whole image, without padding.
+    pub window: [Range<u32>; 2],
 }
 
 impl SlabTiling {
-    /// The tiling of `slab` with `cameras_per_tile` along (s, t). These need not divide the slab's cameras, and may
-    /// exceed them.
+    /// The tiling of whole images with `cameras_per_tile` along (s, t).
     ///
     /// # Errors
-    /// [`FormatError::InvalidArgument`] if a tile would hold no camera, or a size would not fit its integer.
+    /// As [`Self::covering`].
     pub fn new(slab: &Slab, encoding: TexelEncoding, cameras_per_tile: [u32; 2]) -> Result<Self, FormatError> {
-        Self::checked(slab, encoding, cameras_per_tile).map_err(FormatError::argument)
+        Self::covering(slab, encoding, cameras_per_tile, Coverage::whole(slab))
     }
 
-    pub(crate) fn checked(
+    /// The tiling of what `coverage` keeps, its windows rounded out to blocks of 4 texels.
+    ///
+    /// # Errors
+    /// [`FormatError::InvalidArgument`] if the coverage is that of another slab or empty, a tile would hold no camera or more than
+    /// there are, or a size would not fit its integer.
+    pub fn covering(
         slab: &Slab,
         encoding: TexelEncoding,
         cameras_per_tile: [u32; 2],
-    ) -> Result<Self, &'static str> {
-        if cameras_per_tile.contains(&0) {
-            return Err("a tile must hold at least one camera along each axis");
+        coverage: Coverage,
+    ) -> Result<Self, FormatError> {
+        let cameras = [coverage.columns().len(), coverage.rows().len()];
+        if cameras != slab.cameras().map(|n| n as usize) || coverage.resolution() != slab.resolution() {
+            return Err(FormatError::argument("the coverage is that of another slab"));
         }
-        let ([cameras_s, cameras_t], [per_s, per_t]) = (slab.cameras(), cameras_per_tile);
-        let tiles = [cameras_s.div_ceil(per_s), cameras_t.div_ceil(per_t)];
-        Self::sizes(slab, encoding, cameras_per_tile, tiles).ok_or("the slab or its tiles are too large")
+        check_cameras_per_tile(slab, cameras_per_tile).map_err(FormatError::argument)?;
+        if !coverage.keeps_any() {
+            return Err(FormatError::argument("a slab must store at least one camera; leave it out instead"));
+        }
+        Self::checked(encoding, cameras_per_tile, coverage)
+            .ok_or_else(|| FormatError::argument("the slab or its tiles are too large"))
     }
 
-    /// `None` if a size does not fit its integer.
-    fn sizes(slab: &Slab, encoding: TexelEncoding, cameras_per_tile: [u32; 2], tiles: [u32; 2]) -> Option<Self> {
-        let ([tiles_s, tiles_t], [per_s, per_t], [res_u, res_v]) = (tiles, cameras_per_tile, slab.resolution());
-        let [pitch_u, pitch_v] = [res_u.checked_next_multiple_of(BLOCK)?, res_v.checked_next_multiple_of(BLOCK)?];
-        let [width, height] = [per_s.checked_mul(pitch_u)?, per_t.checked_mul(pitch_v)?];
-        let blocks = u64::from(width / BLOCK) * u64::from(height / BLOCK);
-        Some(Self {
-            encoding,
-            cameras: slab.cameras(),
-            resolution: slab.resolution(),
-            cameras_per_tile,
-            tiles,
-            tile_count: tiles_s.checked_mul(tiles_t)?,
-            image_pitch: [pitch_u, pitch_v],
-            tile_size: [width, height],
-            raw_len: blocks.checked_mul(encoding.block_len())?,
-        })
+    /// As [`Self::covering`] for numbers that are known to fit each other; `None` if a size does not fit its integer.
+    pub(crate) fn checked(encoding: TexelEncoding, cameras_per_tile: [u32; 2], coverage: Coverage) -> Option<Self> {
+        let coverage = coverage.aligned(BLOCK);
+        let axes =
+            [Axis::new(coverage.columns(), cameras_per_tile[0])?, Axis::new(coverage.rows(), cameras_per_tile[1])?];
+        let [across, down] = [0, 1].map(|i: usize| u32::try_from(axes[i].extents.len()).ok());
+        across?.checked_mul(down?)?;
+        Some(Self { encoding, cameras_per_tile, coverage, axes })
     }
 
     /// How texels are stored.
@@ -110,64 +93,134 @@ impl SlabTiling {
         self.encoding
     }
 
+    /// What is stored of the images; windows are whole blocks, but end with the image.
+    #[must_use]
+    pub fn coverage(&self) -> &Coverage {
+        &self.coverage
+    }
+
     /// Number of cameras of the slab along s and t.
     #[must_use]
     pub fn cameras(&self) -> [u32; 2] {
-        self.cameras
+        [0, 1].map(|i: usize| self.axes[i].places.len() as u32)
     }
 
-    /// Texels of one camera image along u and v, without padding.
+    /// Texels of one whole camera image along u and v, without padding.
     #[must_use]
     pub fn resolution(&self) -> [u32; 2] {
-        self.resolution
+        self.coverage.resolution()
     }
 
-    /// Cameras of one tile along s and t, each at least 1.
+    /// Cameras of one tile along s and t.
     #[must_use]
     pub fn cameras_per_tile(&self) -> [u32; 2] {
         self.cameras_per_tile
     }
 
-    /// Number of tiles along s and t.
+    /// Number of tiles along s and t, those that are not stored among them.
     #[must_use]
     pub fn tiles(&self) -> [u32; 2] {
-        self.tiles
+        [0, 1].map(|i: usize| self.axes[i].extents.len() as u32)
     }
 
-    /// Number of tiles in all.
-    #[must_use]
-    pub fn tile_count(&self) -> u32 {
-        self.tile_count
+    /// The numbers of the tiles that are stored, in ascending order.
+    pub fn stored_tiles(&self) -> impl Iterator<Item = u32> {
+        let [across, _] = self.tiles();
+        let [columns, rows] = [0, 1].map(|i: usize| self.axes[i].filled());
+        let numbers = rows.into_iter().flat_map(move |j| columns.clone().into_iter().map(move |i| j * across + i));
+        numbers.filter(|&tile| self.stores(tile))
     }
 
-    /// Size of one padded camera image along u and v, texels: the distance between neighbouring cameras in a tile.
+    /// Whether a tile is stored: at least one of its cameras is.
     #[must_use]
-    pub fn image_pitch(&self) -> [u32; 2] {
-        self.image_pitch
+    pub fn stores(&self, tile: u32) -> bool {
+        let [columns, rows] = self.cameras_of(tile);
+        rows.into_iter().any(|t| columns.clone().any(|s| self.coverage.window([s, t]).is_some()))
     }
 
-    /// Width and height of a tile's picture, texels.
+    /// The cameras of a tile along s and t; empty if there is no such tile.
     #[must_use]
-    pub fn tile_size(&self) -> [u32; 2] {
-        self.tile_size
-    }
-
-    /// Length of one unpacked tile, bytes. All tiles of a slab are equally long.
-    #[must_use]
-    pub fn raw_len(&self) -> u64 {
-        self.raw_len
-    }
-
-    /// Where the image of a camera (s, t) is: the number of its tile, and the place `[x, y]` of its first texel in the
-    /// tile's picture, x to the right and y down (spec §7.6, steps 1 and 2). `None` if the slab has no such camera.
-    #[must_use]
-    pub fn place(&self, camera: [u32; 2]) -> Option<(u32, [u32; 2])> {
-        let ([s, t], [per_s, per_t], [pitch_u, pitch_v]) = (camera, self.cameras_per_tile, self.image_pitch);
-        if s >= self.cameras[0] || t >= self.cameras[1] {
-            return None;
+    pub fn cameras_of(&self, tile: u32) -> [Range<u32>; 2] {
+        let ([across, down], [per_s, per_t]) = (self.tiles(), self.cameras_per_tile);
+        let (i, j) = (tile % across, tile / across);
+        if j >= down {
+            return [0..0, 0..0];
         }
-        // Nothing overflows: the tile is below `tile_count`, the place within `tile_size`.
-        let tile = t / per_t * self.tiles[0] + s / per_s;
-        Some((tile, [s % per_s * pitch_u, t % per_t * pitch_v]))
+        let [cameras_s, cameras_t] = self.cameras();
+        // Nothing overflows: the first camera of a tile exists.
+        let range = |i: u32, per: u32, count: u32| i * per..(i * per).saturating_add(per).min(count);
+        [range(i, per_s, cameras_s), range(j, per_t, cameras_t)]
+    }
+
+    /// The windows of a tile's columns along u and of its rows along v, in blocks of the whole image.
+    #[must_use]
+    pub fn block_windows(&self, tile: u32) -> [Vec<Range<u32>>; 2] {
+        let [columns, rows] = self.cameras_of(tile);
+        let blocks = |window: &Range<u32>| window.start / BLOCK..window.end.div_ceil(BLOCK);
+        let of = |windows: &[Range<u32>], cameras: Range<u32>| {
+            windows.get(cameras.start as usize..cameras.end as usize).unwrap_or_default().iter().map(blocks).collect()
+        };
+        [of(self.coverage.columns(), columns), of(self.coverage.rows(), rows)]
+    }
+
+    /// Width and height of a tile's picture, texels; 0 for a tile that there is not.
+    #[must_use]
+    pub fn tile_size(&self, tile: u32) -> [u32; 2] {
+        let [across, _] = self.tiles();
+        let extent = |axis: &Axis, i: u32| axis.extents.get(i as usize).copied().unwrap_or(0);
+        [extent(&self.axes[0], tile % across), extent(&self.axes[1], tile / across)]
+    }
+
+    /// Length of one unpacked tile, bytes.
+    #[must_use]
+    pub fn raw_len(&self, tile: u32) -> u64 {
+        let [width, height] = self.tile_size(tile).map(|texels| u64::from(texels / BLOCK));
+        width.saturating_mul(height).saturating_mul(self.encoding.block_len())
+    }
+
+    /// Where the window of a camera (s, t) is; `None` if the camera is not stored.
+    #[must_use]
+    pub fn place(&self, camera: [u32; 2]) -> Option<CameraPlace> {
+        let window = self.coverage.window(camera)?;
+        let [per_s, per_t] = self.cameras_per_tile;
+        let corner = [self.column_place(camera[0]), self.row_place(camera[1])];
+        Some(CameraPlace { tile: camera[1] / per_t * self.tiles()[0] + camera[0] / per_s, corner, window })
+    }
+}
+
+impl SlabTiling {
+    /// Where the windows of a column of cameras begin in their tile's pictures: texels from the left. 0 if there is no such
+    /// column.
+    #[must_use]
+    pub fn column_place(&self, s: u32) -> u32 {
+        self.axes[0].places.get(s as usize).copied().unwrap_or(0)
+    }
+
+    /// Where the windows of a row of cameras begin in their tile's pictures: texels from the top. 0 if there is no such row.
+    #[must_use]
+    pub fn row_place(&self, t: u32) -> u32 {
+        self.axes[1].places.get(t as usize).copied().unwrap_or(0)
+    }
+}
+
+impl Axis {
+    /// `None` if a tile would be too large.
+    fn new(windows: &[Range<u32>], per_tile: u32) -> Option<Self> {
+        let mut axis = Self { places: Vec::with_capacity(windows.len()), extents: Vec::new() };
+        for tile in windows.chunks(per_tile as usize) {
+            let mut end = 0u32;
+            for window in tile {
+                axis.places.push(end);
+                let blocks = window.end.div_ceil(BLOCK) - window.start / BLOCK;
+                end = end.checked_add(blocks.checked_mul(BLOCK)?)?;
+            }
+            axis.extents.push(end);
+        }
+        Some(axis)
+    }
+
+    /// The columns or rows of tiles that are not empty.
+    fn filled(&self) -> Vec<u32> {
+        (0u32..).zip(&self.extents).filter(|&(_, &extent)| extent > 0).map(|(i, _)| i).collect()
     }
 }

@@ -17,6 +17,7 @@ mod probe;
 mod storage;
 mod target;
 mod uniforms;
+mod windows;
 
 pub use error::GpuError;
 pub use gpu::{Gpu, adapter_lines};

@@ -26,16 +26,29 @@ pub struct ReflectionPass {
     frame: wgpu::Buffer,
 }
 
-/// The whole shader: with slabs in the given storage, or with an environment map.
-pub(crate) fn shader_source(slabs: Option<Storage>, probe: bool) -> String {
+/// A variant of the slab shader: only what a light field needs is compiled.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SlabShader {
+    pub(crate) storage: Storage,
+    /// Whether images have windows or cameras are left out.
+    pub(crate) cropped: bool,
+}
+
+/// The whole shader: with slabs, or with an environment map.
+pub(crate) fn shader_source(slabs: Option<SlabShader>, probe: bool) -> String {
     let mut source = String::new();
     match slabs {
         None => source += include_str!("shaders/environment.wgsl"),
-        Some(storage) => {
+        Some(SlabShader { storage, cropped }) => {
             source += include_str!("shaders/slabs.wgsl");
             source += match storage {
                 Storage::Bc1Volume => include_str!("shaders/volume.wgsl"),
-                Storage::Bc1Array | Storage::Rgba8Array => include_str!("shaders/array.wgsl"),
+                Storage::Bc1Array | Storage::Rgba8Array | Storage::Rgba16FArray => include_str!("shaders/array.wgsl"),
+            };
+            source += if cropped { include_str!("shaders/cropped.wgsl") } else { include_str!("shaders/whole.wgsl") };
+            source += match storage {
+                Storage::Rgba16FArray => include_str!("shaders/linear.wgsl"),
+                _ => include_str!("shaders/srgb.wgsl"),
             };
         }
     }
@@ -96,7 +109,7 @@ impl ReflectionPass {
         gpu.checked("the slab pipeline", || {
             let sampler = bilinear_sampler(gpu);
             let resources = texture.bindings(&sampler);
-            Self::new(gpu, &shader_source(Some(texture.storage()), false), &resources)
+            Self::new(gpu, &shader_source(Some(texture.shader()), false), &resources)
         })
     }
 

@@ -24,7 +24,8 @@ pub struct Probe {
     pub uv: Vec2,
 }
 
-/// What the slab shader fetches for each probe, as 8-bit values, one pixel each.
+/// What the slab shader fetches for each probe, as 8-bit values, one pixel each. Transparent black where the camera is left
+/// out; outside a window its nearest texel.
 ///
 /// # Errors
 /// If a probe lies outside the light field, if the device refuses the pass, or if there are more probes than its largest
@@ -56,7 +57,7 @@ impl Probe {
 }
 
 fn draw(gpu: &Gpu, texture: &SlabTexture, probes: &[Probe], target: &Target) {
-    let pipeline = pipeline(gpu, &shader_source(Some(texture.storage()), true), "probe", &[], None);
+    let pipeline = pipeline(gpu, &shader_source(Some(texture.shader()), true), "probe", &[], None);
     let raw = |p: &Probe| ProbeUniform { uv: p.uv, camera: p.camera, face: p.face.index().into(), padding: 0 };
     let raw: Vec<_> = probes.iter().map(raw).collect();
     let list = buffer(gpu, "probes", bytemuck::cast_slice(&raw), wgpu::BufferUsages::STORAGE);

@@ -6,6 +6,8 @@ use lf_compress::PackedLightField;
 use lf_compress::volume::SlabLayout;
 use lf_math::{Pinhole, Slab};
 
+use crate::windows::{NO_MASK, TablePlace, WindowTable};
+
 /// `Frame` of reflect.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -33,6 +35,7 @@ pub(crate) struct SlabUniform {
     pub(crate) first_slice: u32,
     pub(crate) groups_s: u32,
     pub(crate) padding: [u32; 2],
+    pub(crate) table: [u32; 4],
 }
 
 /// `Slabs` of slabs.wgsl.
@@ -61,18 +64,19 @@ impl FrameUniform {
 }
 
 impl SlabsUniform {
-    pub(crate) fn new(field: &PackedLightField) -> Self {
+    pub(crate) fn new(field: &PackedLightField, table: Option<&WindowTable>) -> Self {
         let mut uniform = Self::zeroed();
         uniform.texel_scale = Vec3::from(field.layout().size().map(|n| 1.0 / n as f32));
-        for (slab, layout) in field.geometry().slabs().iter().zip(field.layout().slabs()) {
-            uniform.faces[usize::from(slab.face().index())] = SlabUniform::new(slab, layout);
+        for (number, (slab, layout)) in field.geometry().slabs().iter().zip(field.layout().slabs()).enumerate() {
+            let place = table.map_or(TablePlace { columns: 0, rows: 0, mask: NO_MASK }, |table| table.place(number));
+            uniform.faces[usize::from(slab.face().index())] = SlabUniform::new(slab, layout, place);
         }
         uniform
     }
 }
 
 impl SlabUniform {
-    fn new(slab: &Slab, layout: &SlabLayout) -> Self {
+    fn new(slab: &Slab, layout: &SlabLayout, place: TablePlace) -> Self {
         let ([s, t], [u, v]) = (slab.st(), slab.uv());
         Self {
             st_first: Vec2::new(s.first(), t.first()),
@@ -84,11 +88,12 @@ impl SlabUniform {
             disparity: slab.disparity(),
             plane: slab.plane(),
             present: 1,
-            pitch: layout.pitch(),
-            cameras_per_slice: layout.cameras_per_slice(),
+            pitch: slab.resolution().map(|texels| texels.next_multiple_of(4)),
+            cameras_per_slice: layout.tiling().cameras_per_tile(),
             first_slice: layout.first_slice(),
             groups_s: layout.groups()[0],
             padding: [0; 2],
+            table: [place.columns, place.rows, place.mask, 0],
         }
     }
 }
@@ -98,7 +103,7 @@ mod tests {
     use super::*;
     use std::mem::{offset_of, size_of};
 
-    use crate::pass::shader_source;
+    use crate::pass::{SlabShader, shader_source};
     use crate::storage::Storage;
 
     /// Offsets of a WGSL struct's members and its size, as naga lays it out.
@@ -115,9 +120,12 @@ mod tests {
     #[test]
     fn every_shader_is_valid() {
         use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
-        for storage in [None, Some(Storage::Bc1Volume), Some(Storage::Bc1Array), Some(Storage::Rgba8Array)] {
-            for probe in [false, storage.is_some()] {
-                let module = parsed(&shader_source(storage, probe));
+        let variants = Storage::ALL
+            .into_iter()
+            .flat_map(|storage| [false, true].map(|cropped| Some(SlabShader { storage, cropped })));
+        for shader in variants.chain([None]) {
+            for probe in [false, shader.is_some()] {
+                let module = parsed(&shader_source(shader, probe));
                 Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).expect("valid");
             }
         }
@@ -132,7 +140,7 @@ mod tests {
 
     #[test]
     fn rust_and_wgsl_agree_on_every_offset() {
-        let module = parsed(&shader_source(Some(Storage::Bc1Volume), true));
+        let module = parsed(&shader_source(Some(SlabShader { storage: Storage::Bc1Volume, cropped: true }), true));
         same_layout!(&module, "Frame", FrameUniform, clip_from_cell, eye, padding);
         same_layout!(
             &module,
@@ -151,7 +159,8 @@ mod tests {
             cameras_per_slice,
             first_slice,
             groups_s,
-            padding
+            padding,
+            table
         );
         same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, faces);
         same_layout!(&module, "Probe", ProbeUniform, uv, camera, face, padding);

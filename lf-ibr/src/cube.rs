@@ -5,6 +5,7 @@ use lf_math::{CubeCoord, CubeMap, Face, Image, Ray, cube_coord, cube_direction};
 
 use crate::bilinear::bilinear;
 use crate::frame::Environment;
+use crate::texel::Texel;
 
 /// A cube map with a border of one texel around each face, so that bilinear interpolation crosses the edges as it does
 /// on a GPU.
@@ -29,7 +30,7 @@ impl Environment for CubeField {
         let image = &self.faces[usize::from(coord.face.index())];
         // Texel centres of the face are at ½; the border adds one.
         let position = (coord.uv * self.size as f32 + 0.5).min(Vec2::splat(self.size as f32 + 0.5));
-        Some(bilinear(position, |x, y| image.get(x as u32, y as u32)))
+        Some(<[u8; 4]>::color(bilinear(position, |x, y| image.get(x as u32, y as u32))))
     }
 }
 

@@ -16,11 +16,13 @@ mod cube;
 mod frame;
 mod gbuffer;
 mod slabs;
+mod texel;
 
 pub use cube::CubeField;
 pub use frame::{Environment, reflect_frame};
 pub use gbuffer::{Fragment, GBuffer};
 pub use slabs::SlabField;
+pub use texel::Texel;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,24 +1,25 @@
 //! Reflections from light field slabs.
 
-use glam::Vec3;
-use lf_math::{CameraTap, GeometryError, LightFieldGeometry, Ray, SlabTexels};
+use glam::{Vec2, Vec3};
+use lf_math::{CameraTap, GeometryError, ImageWindow, LightFieldGeometry, Ray, SlabTexels};
 
 use crate::bilinear::bilinear;
 use crate::frame::Environment;
+use crate::texel::Texel;
 
-/// Slabs with their decoded texels.
+/// Slabs with their decoded texels, whole or cropped: 8-bit ones by default, or linear half floats.
 #[derive(Debug, Clone)]
-pub struct SlabField {
+pub struct SlabField<T = [u8; 4]> {
     geometry: LightFieldGeometry,
-    texels: Vec<SlabTexels>,
+    texels: Vec<SlabTexels<T>>,
 }
 
-impl SlabField {
+impl<T: Texel> SlabField<T> {
     /// A light field with the texels of each of its slabs.
     ///
     /// # Errors
     /// There must be texels for every slab, with its numbers of cameras and texels.
-    pub fn new(geometry: LightFieldGeometry, texels: Vec<SlabTexels>) -> Result<Self, GeometryError> {
+    pub fn new(geometry: LightFieldGeometry, texels: Vec<SlabTexels<T>>) -> Result<Self, GeometryError> {
         if texels.len() != geometry.slabs().len() {
             let expected = geometry.slabs().len();
             return Err(GeometryError::Length { what: "slab texels", len: texels.len(), expected });
@@ -36,23 +37,39 @@ impl SlabField {
     }
 }
 
-impl Environment for SlabField {
+impl<T: Texel> Environment for SlabField<T> {
     /// Fig. 8 of the paper: four cameras, a bilinear fetch from each, blended by the ray's place between them. Rays
-    /// outside the slab's range are answered by its nearest samples.
+    /// outside the slab's range or the windows of its images are answered by the nearest samples that there are. Cameras
+    /// that are left out are made up for by the others.
     fn look_up(&self, ray: &Ray) -> Option<Vec3> {
         let indexed = self.geometry.index_ray(ray)?;
         let (slab, texels) = (&self.geometry.slabs()[indexed.slab], &self.texels[indexed.slab]);
-        let taps = slab.taps(&indexed.coord);
-        Some(taps.iter().map(|tap| tap.weight * fetch(texels, tap)).sum())
+        let (mut sum, mut found, mut lost) = (Vec3::ZERO, 0.0, 0.0);
+        for tap in slab.taps(&indexed.coord) {
+            match texels.image(tap.camera) {
+                Some(image) => {
+                    sum += tap.weight * fetch(&image, &tap);
+                    found += tap.weight;
+                }
+                None => lost += tap.weight,
+            }
+        }
+        if lost > 0.0 {
+            sum /= found;
+        }
+        (found > 0.0).then(|| T::color(sum))
     }
 }
 
-/// Bilinear fetch from one camera's image at index units `uv`, which must lie within it. Result in 0 … 1.
-fn fetch(texels: &SlabTexels, tap: &CameraTap) -> Vec3 {
-    let [width, height] = texels.resolution().map(|n| n as usize);
-    let image = texels.image(tap.camera);
+/// Bilinear fetch from one camera's image, at the nearest place of its window.
+fn fetch<T: Texel>(image: &ImageWindow<'_, T>, tap: &CameraTap) -> Vec3 {
+    let (width, height) = (image.u.len(), image.v.len());
+    let first = Vec2::new(image.u.start as f32, image.v.start as f32);
+    let last = Vec2::new((width - 1) as f32, (height - 1) as f32);
+    // Indices are integers below 2¹⁶ and so is the difference of two: nothing is rounded that was not before.
+    let place = tap.uv.clamp(first, first + last) - first;
     // A neighbour past the edge weighs nothing.
-    bilinear(tap.uv, |x, y| image[y.min(height - 1) * width + x.min(width - 1)])
+    bilinear(place, |x, y| image.texels[y.min(height - 1) * width + x.min(width - 1)])
 }
 
 #[cfg(test)]

@@ -37,6 +37,16 @@ pub enum GeometryError {
     /// No slab, or slabs not in the order of their faces.
     #[error("slabs must be one to six, in the order +X -X +Y -Y +Z -Z")]
     SlabOrder,
+    /// A window of an image reaches beyond it, or ends before it begins.
+    #[error("the window from texel {start} to {end} is not one of an image of {texels} texels")]
+    Window {
+        /// The first texel.
+        start: u32,
+        /// The texel after the last.
+        end: u32,
+        /// Texels of the image.
+        texels: u32,
+    },
     /// An index buffer or an image has a length that its shape does not allow.
     #[error("{what} has length {len}, expected {expected}")]
     Length {

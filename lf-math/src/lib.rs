@@ -20,6 +20,7 @@ extern crate alloc;
 mod axis;
 mod cell;
 mod color;
+mod coverage;
 mod cube;
 mod error;
 mod face;
@@ -35,6 +36,7 @@ mod texels;
 pub use axis::SampledAxis;
 pub use cell::Cell;
 pub use color::{linear_from_srgb, srgb_from_linear, srgb8_from_linear};
+pub use coverage::Coverage;
 pub use cube::{CubeCoord, CubeMap, cube_coord, cube_direction};
 pub use error::GeometryError;
 pub use face::Face;
@@ -45,7 +47,7 @@ pub use metrics::{ImageError, image_error};
 pub use pinhole::{Pinhole, near_plane};
 pub use ray::{Ray, normalized, reflect};
 pub use slab::{CameraTap, Slab, SlabCoord};
-pub use texels::SlabTexels;
+pub use texels::{ImageWindow, SlabTexels};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

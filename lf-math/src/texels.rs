@@ -1,21 +1,34 @@
 //! The 4D array of one slab's texels, decoded.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
-use crate::Slab;
 use crate::error::GeometryError;
+use crate::{Coverage, Slab};
 
-/// All texels of a slab, camera after camera (s fastest, then t), each image row after row: by default 8-bit RGBA,
-/// sRGB-encoded.
+/// The texels of a slab, camera after camera (s fastest, then t), of each image the window that its [`Coverage`] keeps, row
+/// after row. Texels are by default 8-bit RGBA, sRGB-encoded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlabTexels<T = [u8; 4]> {
-    cameras: [u32; 2],
-    resolution: [u32; 2],
+    coverage: Coverage,
+    /// Where each camera's image begins, t·columns + s.
+    starts: Vec<usize>,
     texels: Vec<T>,
 }
 
+/// The part of one camera's image that is there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImageWindow<'a, T = [u8; 4]> {
+    /// Texels along u, of the whole image's.
+    pub u: Range<u32>,
+    /// Texels along v, of the whole image's.
+    pub v: Range<u32>,
+    /// Row after row.
+    pub texels: &'a [T],
+}
+
 impl<T: Copy> SlabTexels<T> {
-    /// The texels of `slab`, in the order ((t·cameras_s + s)·resolution_v + v)·resolution_u + u.
+    /// All texels of `slab`, in the order ((t·cameras_s + s)·resolution_v + v)·resolution_u + u.
     ///
     /// # Errors
     /// `texels` must hold exactly one value for each sample of the slab.
@@ -28,7 +41,42 @@ impl<T: Copy> SlabTexels<T> {
         if texels.len() != expected {
             return Err(GeometryError::Length { what: "slab texels", len: texels.len(), expected });
         }
-        Ok(Self { cameras, resolution, texels })
+        Self::covering(Coverage::whole(slab), texels)
+    }
+
+    /// The texels that `coverage` keeps, window after window.
+    ///
+    /// # Errors
+    /// `texels` must hold exactly one value for each.
+    pub fn covering(coverage: Coverage, texels: Vec<T>) -> Result<Self, GeometryError> {
+        let mut end = 0usize;
+        let mut starts = Vec::new();
+        for camera in coverage.cameras() {
+            starts.push(end);
+            let area = coverage.window(camera).map_or(Some(0), |[u, v]| u.len().checked_mul(v.len()));
+            end = area.and_then(|area| end.checked_add(area)).unwrap_or(usize::MAX);
+        }
+        if texels.len() != end {
+            return Err(GeometryError::Length { what: "slab texels", len: texels.len(), expected: end });
+        }
+        Ok(Self { coverage, starts, texels })
+    }
+
+    /// What `coverage` keeps of these texels.
+    ///
+    /// # Errors
+    /// If it asks for texels that are not there.
+    pub fn crop(&self, coverage: Coverage) -> Result<Self, GeometryError> {
+        let mut texels = Vec::new();
+        for camera in coverage.cameras() {
+            let Some([u, v]) = coverage.window(camera) else { continue };
+            let missing = || GeometryError::Window { start: u.start, end: u.end, texels: 0 };
+            let image = self.image(camera).ok_or_else(missing)?;
+            for row in v {
+                texels.extend_from_slice(image.row(row, u.clone()).ok_or_else(missing)?);
+            }
+        }
+        Self::covering(coverage, texels)
     }
 
     /// Checks that the texels are those of a slab with the numbers of cameras and texels of `slab`.
@@ -37,8 +85,8 @@ impl<T: Copy> SlabTexels<T> {
     /// If any of the four numbers differs.
     pub fn check(&self, slab: &Slab) -> Result<(), GeometryError> {
         let sizes = [
-            ("camera grid of slab texels", self.cameras, slab.cameras()),
-            ("image of slab texels", self.resolution, slab.resolution()),
+            ("camera grid of slab texels", self.cameras(), slab.cameras()),
+            ("image of slab texels", self.resolution(), slab.resolution()),
         ];
         for (what, have, want) in sizes {
             if have != want {
@@ -51,13 +99,19 @@ impl<T: Copy> SlabTexels<T> {
     /// Number of cameras along s and t.
     #[must_use]
     pub fn cameras(&self) -> [u32; 2] {
-        self.cameras
+        [self.coverage.columns().len() as u32, self.coverage.rows().len() as u32]
     }
 
-    /// Texels of one image along u and v.
+    /// Texels of a whole image along u and v.
     #[must_use]
     pub fn resolution(&self) -> [u32; 2] {
-        self.resolution
+        self.coverage.resolution()
+    }
+
+    /// Which texels there are.
+    #[must_use]
+    pub fn coverage(&self) -> &Coverage {
+        &self.coverage
     }
 
     /// All texels in storage order.
@@ -66,26 +120,31 @@ impl<T: Copy> SlabTexels<T> {
         &self.texels
     }
 
-    /// The texels of one camera's image, row after row.
-    ///
-    /// # Panics
-    /// If the camera is outside the grid.
+    /// What there is of one camera's image; `None` if nothing is.
     #[must_use]
-    pub fn image(&self, camera: [u32; 2]) -> &[T] {
-        assert!(camera[0] < self.cameras[0] && camera[1] < self.cameras[1], "camera {camera:?} of {:?}", self.cameras);
-        let size = self.resolution[0] as usize * self.resolution[1] as usize;
-        let index = camera[1] as usize * self.cameras[0] as usize + camera[0] as usize;
-        &self.texels[index * size..][..size]
+    pub fn image(&self, camera: [u32; 2]) -> Option<ImageWindow<'_, T>> {
+        let [u, v] = self.coverage.window(camera)?;
+        let start = *self.starts.get(camera[1] as usize * self.coverage.columns().len() + camera[0] as usize)?;
+        let texels = self.texels.get(start..)?.get(..u.len() * v.len())?;
+        Some(ImageWindow { u, v, texels })
     }
 
-    /// One texel.
-    ///
-    /// # Panics
-    /// If the camera or the texel is outside the slab.
+    /// One texel; `None` if it is not there.
     #[must_use]
-    pub fn texel(&self, camera: [u32; 2], texel: [u32; 2]) -> T {
-        assert!(texel[0] < self.resolution[0], "texel {texel:?} of {:?}", self.resolution);
-        self.image(camera)[texel[1] as usize * self.resolution[0] as usize + texel[0] as usize]
+    pub fn texel(&self, camera: [u32; 2], texel: [u32; 2]) -> Option<T> {
+        self.image(camera)?.row(texel[1], texel[0]..texel[0].checked_add(1)?)?.first().copied()
+    }
+}
+
+impl<'a, T> ImageWindow<'a, T> {
+    /// Part of a row of the image; `None` if it is not all there.
+    #[must_use]
+    pub fn row(&self, v: u32, u: Range<u32>) -> Option<&'a [T]> {
+        if !self.v.contains(&v) || u.start < self.u.start || u.end > self.u.end || u.start > u.end {
+            return None;
+        }
+        let start = (v - self.v.start) as usize * self.u.len() + (u.start - self.u.start) as usize;
+        self.texels.get(start..start + u.len())
     }
 }
 
@@ -94,14 +153,40 @@ mod tests {
     use super::*;
     use crate::{Face, SampledAxis};
 
+    fn slab() -> Slab {
+        let axis = |count| SampledAxis::spanning(-1.0, 1.0, count).unwrap();
+        Slab::new(Face::PosX, 0.0, [axis(2), axis(3)], [axis(4), axis(5)], None).unwrap()
+    }
+
     #[test]
     fn texels_are_addressed_camera_by_camera() {
-        let axis = |count| SampledAxis::spanning(-1.0, 1.0, count).unwrap();
-        let slab = Slab::new(Face::PosX, 0.0, [axis(2), axis(3)], [axis(4), axis(5)], None).unwrap();
         let all: Vec<[u8; 4]> = (0..120).map(|i| [i, 0, 0, 255]).collect();
-        let texels = SlabTexels::new(&slab, all.clone()).unwrap();
-        assert_eq!(texels.texel([1, 2], [3, 4]), [((2 * 2 + 1) * 5 + 4) * 4 + 3, 0, 0, 255]);
-        assert_eq!(texels.image([1, 2])[4 * 4 + 3], texels.texel([1, 2], [3, 4]));
-        assert!(SlabTexels::new(&slab, all[1..].to_vec()).is_err());
+        let texels = SlabTexels::new(&slab(), all.clone()).unwrap();
+        assert_eq!(texels.texel([1, 2], [3, 4]), Some([((2 * 2 + 1) * 5 + 4) * 4 + 3, 0, 0, 255]));
+        assert_eq!(texels.image([1, 2]).unwrap().texels[4 * 4 + 3], texels.texel([1, 2], [3, 4]).unwrap());
+        assert_eq!(texels.texel([2, 0], [0, 0]), None);
+        assert_eq!(texels.texel([0, 0], [4, 0]), None);
+        assert!(SlabTexels::new(&slab(), all[1..].to_vec()).is_err());
+    }
+
+    #[test]
+    fn a_crop_keeps_its_windows_and_nothing_else() {
+        let all = SlabTexels::new(&slab(), (0..120u8).collect()).unwrap();
+        let coverage = Coverage::new(&slab(), vec![0..2, 1..4], vec![2..2, 0..5, 4..5]).unwrap();
+        let kept = coverage.with_cameras(vec![true, true, false, true, true, true]).unwrap();
+        let cropped = all.crop(kept.clone()).unwrap();
+        assert_eq!(cropped.texels().len() as u64, kept.texels());
+        assert_eq!(kept.texels(), 3 * 5 + 2 + 3);
+        for camera in kept.cameras() {
+            for texel in (0..5).flat_map(|v| (0..4).map(move |u| [u, v])) {
+                let inside = kept.window(camera).is_some_and(|[u, v]| u.contains(&texel[0]) && v.contains(&texel[1]));
+                let expected = all.texel(camera, texel).filter(|_| inside);
+                assert_eq!(cropped.texel(camera, texel), expected, "{camera:?} {texel:?}");
+            }
+        }
+        assert!(cropped.crop(Coverage::whole(&slab())).is_err());
+        assert!(Coverage::new(&slab(), vec![0..2, 1..5], vec![0..5; 3]).is_err());
+        assert!(Coverage::new(&slab(), vec![0..2], vec![0..5; 3]).is_err());
+        assert!(Coverage::whole(&slab()).is_whole() && !kept.is_whole());
     }
 }

@@ -63,7 +63,8 @@ fn check(gpu: &Gpu, packed: &PackedLightField, original: &[SlabTexels], storage:
         for camera in (0..cameras_t).flat_map(|t| (0..cameras_s).map(move |s| [s, t])) {
             for texel in picks(height).into_iter().flat_map(|v| picks(width).into_iter().map(move |u| [u, v])) {
                 probes.push(Probe { face: slab.face(), camera, uv: Vec2::from(texel.map(|i| i as f32)) });
-                expected.push((decoded[number].texel(camera, texel), original[number].texel(camera, texel)));
+                let texel_of = |texels: &SlabTexels| texels.texel(camera, texel).expect("kept");
+                expected.push((texel_of(&decoded[number]), texel_of(&original[number])));
             }
         }
     }
@@ -87,7 +88,7 @@ fn every_storage_reads_every_texel_as_the_cpu_does() {
     let gpu = gpu();
     println!("adapter: {}", gpu.description());
     let (packed, original) = field(TexelEncoding::Bc1);
-    for storage in Storage::ALL {
+    for storage in [Storage::Bc1Volume, Storage::Bc1Array, Storage::Rgba8Array] {
         check(&gpu, &packed, &original, storage);
     }
     let (plain, original) = field(TexelEncoding::Rgba8);

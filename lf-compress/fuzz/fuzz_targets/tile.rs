@@ -1,6 +1,8 @@
-//! Packed tiles from anywhere decode or are refused, without panic; what was packed comes back; RDO keeps its bound.
+//! Packed tiles from anywhere, of whole and of cropped images, decode or are refused, without panic; what was packed comes back; RDO keeps its bound.
 
 #![no_main]
+
+use std::ops::Range;
 
 use arbitrary::Arbitrary;
 use lf_compress::bc1::decode_block;
@@ -9,17 +11,26 @@ use libfuzzer_sys::fuzz_target;
 
 #[derive(Arbitrary, Debug)]
 struct Input {
-    cameras: [u8; 2],
-    blocks: [u8; 2],
+    /// First block and number of blocks of each column and each row of cameras.
+    windows: [Vec<[u8; 2]>; 2],
+    /// Whether all have the first one's window.
+    uniform: [bool; 2],
     /// Taken as a packed tile, as the content of a frame, and as blocks.
     bytes: Vec<u8>,
     texels: [[u8; 4]; 16],
     lambda: u16,
 }
 
+/// At most six, of at most four blocks.
+fn windows(numbers: &[[u8; 2]], uniform: bool) -> Vec<Range<u32>> {
+    let window = |[first, count]: [u8; 2]| u32::from(first % 8)..u32::from(first % 8 + count % 5);
+    let chosen = numbers.iter().take(6).map(|pair| if uniform { numbers[0] } else { *pair });
+    chosen.map(window).collect()
+}
+
 fuzz_target!(|input: Input| {
-    let [cameras, blocks] = [input.cameras, input.blocks].map(|pair| pair.map(|n| u32::from(n % 5)));
-    let Ok(shape) = TileShape::new(cameras, blocks) else { return };
+    let [columns, rows] = [0, 1].map(|axis| windows(&input.windows[axis], input.uniform[axis]));
+    let Ok(shape) = TileShape::windowed(&columns, &rows) else { return };
     let _ = decode(&shape, &input.bytes);
     // A whole frame around any content comes further than random bytes do.
     let frame = zstd::bulk::compress(&input.bytes, 1).expect("zstd packs");

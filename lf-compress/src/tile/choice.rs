@@ -21,7 +21,7 @@ pub(super) struct Prediction {
 
 impl Prediction {
     pub(super) fn new(around: &Around<'_>, tile: &[RawBlock]) -> Self {
-        let (&[up_left, up, up_right], left) = (around.above, around.left);
+        let ([up_left, up, up_right], left) = (around.above, around.left);
         let [west, north] = around.back.map(|back| earlier(tile, around.place, back));
         let ends = [up, left, up_right, up_left, west, north].map(|block| block.ends);
         Self { ends, sources: [up, left], context: around.context }

@@ -4,30 +4,49 @@
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::block::{Block, ESCAPE, RawBlock, STEP_SUM, STEPS, join, split};
-use super::grid::{Around, CONTEXTS, Grid, earlier};
+use super::grid::{self, Around, CONTEXTS, earlier};
 use super::streams::Content;
 use super::transfer::transfer;
 use super::{TileError, TileShape};
 
 /// Unpacks a tile to its blocks in raster order, exactly as they were given to [`encode`](super::encode).
 ///
-/// `bytes` may come from anywhere. Beside the result, [`TileShape::raw_len`] bytes, at most 11/8 of that is held.
+/// `bytes` and `shape` may come from anywhere. Beside the result, [`TileShape::raw_len`] bytes, at most 11/8 of that is
+/// held, and less than 100 bytes for each column and row of blocks of the tile's picture.
 ///
 /// # Errors
 /// [`TileError::Frame`] if `bytes` is not one whole zstd frame with its content size and a window of at most 8 MiB,
 /// [`TileError::Malformed`] if what it holds is not the streams of a tile of this shape.
 pub fn decode(shape: &TileShape, bytes: &[u8]) -> Result<Vec<u8>, TileError> {
     let content = Content::unpack(bytes, shape.block_count())?;
-    let mut reader = Reader::new(&content);
     let mut tile = vec![[0; 8]; shape.block_count()];
-    dispatch!(Level::new(), simd => read_blocks(simd, shape, &mut reader, &mut tile));
-    reader.finish(&content)?;
+    read_tile(shape, &content, &mut tile)?;
     Ok(tile.into_flattened())
+}
+
+/// As [`decode`], into a buffer of exactly [`TileShape::raw_len`] bytes; on an error its contents are of no use.
+///
+/// # Errors
+/// As [`decode`]; [`TileError::BlockBytes`] if the buffer has another length.
+pub fn decode_into(shape: &TileShape, bytes: &[u8], out: &mut [u8]) -> Result<(), TileError> {
+    let found = out.len();
+    match out.as_chunks_mut() {
+        (tile, []) if tile.len() == shape.block_count() => {
+            read_tile(shape, &Content::unpack(bytes, shape.block_count())?, tile)
+        }
+        _ => Err(TileError::BlockBytes { expected: shape.raw_len(), found }),
+    }
+}
+
+fn read_tile(shape: &TileShape, content: &Content, tile: &mut [RawBlock]) -> Result<(), TileError> {
+    let mut reader = Reader::new(content);
+    dispatch!(Level::new(), simd => read_blocks(simd, shape, &mut reader, tile));
+    reader.finish(content)
 }
 
 #[inline(always)]
 fn read_blocks<S: Simd>(simd: S, shape: &TileShape, reader: &mut Reader<'_>, tile: &mut [RawBlock]) {
-    Grid::walk(shape, tile, |around, tile| {
+    grid::walk(shape, tile, |around, tile| {
         let (block, rows) = reader.block(simd, around, tile);
         tile[around.place] = block.to_raw();
         (block, rows)
@@ -60,7 +79,7 @@ impl<'a> Reader<'a> {
         let mode = self.mode(around.context);
         let rows = usize::from(mode & 15);
         let correction = self.correction(rows);
-        let (&[up_left, up, up_right], left) = (around.above, around.left);
+        let ([up_left, up, up_right], left) = (around.above, around.left);
         // The kinds 6 and 7 begin with the endpoints above and to the left, as 0 and 1 do.
         let base = if mode & 0x20 == 0 { up.ends } else { left.ends };
         let ends = match mode >> 5 {

@@ -3,7 +3,7 @@
 use super::block::{Block, RawBlock};
 use super::choice::{Choice, Prediction, cheapest};
 use super::cost::{Costs, Counts};
-use super::grid::Grid;
+use super::grid;
 use super::streams::Streams;
 use super::{TileError, TileShape};
 
@@ -38,7 +38,7 @@ pub(super) fn walk(
     costs: &Costs,
     mut sink: impl FnMut(usize, &Choice, Block),
 ) {
-    Grid::walk(shape, tile, |around, tile| {
+    grid::walk(shape, tile, |around, tile| {
         let block = Block::from_raw(tile[around.place]);
         let choice = cheapest(block, &Prediction::new(around, tile), costs);
         sink(around.context, &choice, block);

@@ -1,8 +1,11 @@
 //! The order in which blocks are coded, and the neighbours of each.
 //!
-//! Positions within a camera's image go row by row; at each position the blocks of all cameras follow each other, row
-//! of cameras by row of cameras. The blocks at the current position lie in a small grid with a border, so that all
-//! neighbours are found by fixed distances and stay in the first-level cache.
+//! Positions within the cameras' images go row by row; at each position the blocks of all cameras whose windows hold it
+//! follow each other, row of cameras by row of cameras. One row of this grid is kept, in which each block replaces that
+//! of the camera above, so that all neighbours are at hand in registers or in the first-level cache. Which cameras there
+//! are is listed beforehand for each column and each row of positions: within the grid nothing asks for windows.
+
+use std::ops::Range;
 
 use super::TileShape;
 use super::block::{Block, RawBlock};
@@ -12,24 +15,10 @@ pub(super) const CONTEXTS: usize = 4;
 /// The contexts before the first position.
 const FIRST_CONTEXT: u8 = CONTEXTS as u8 - 1;
 
-/// The blocks of all cameras at one position, with a border of blocks from earlier positions.
-pub(super) struct Grid {
-    cameras: [usize; 2],
-    blocks: [usize; 2],
-    /// Cameras in rows, with one more row above and one more column at either side.
-    cells: Vec<Block>,
-    /// The context of the next block to be coded in each column of cameras.
-    contexts: Vec<u8>,
-    /// Raster place of the block of camera (0, 0) at this position.
-    here: usize,
-    /// See [`Around`].
-    back: [usize; 2],
-}
-
 /// What is known when a block is coded.
 pub(super) struct Around<'a> {
     /// The blocks of the cameras above left, above and above right.
-    pub(super) above: &'a [Block; 3],
+    pub(super) above: [Block; 3],
     /// The block of the camera to the left.
     pub(super) left: Block,
     /// The mode stream.
@@ -37,86 +26,186 @@ pub(super) struct Around<'a> {
     /// Raster place of the block.
     pub(super) place: usize,
     /// How far back the blocks before and above in the same image are; beyond the tile if they are not there.
-    pub(super) back: [usize; 2],
+    pub(super) back: &'a [usize; 2],
+    /// Raster places of the blocks of the cameras to the right and below at this position. Right of the last camera it is
+    /// some other block that is still to come, or beyond the tile; below the last one it is beyond the tile.
+    pub(super) next: [usize; 2],
+}
+
+/// Visits every block in coding order: `visit` takes what is around it, may look at and write the tile, and returns
+/// the block and the number of its rows that are corrected.
+#[inline(always)]
+pub(super) fn walk(
+    shape: &TileShape,
+    tile: &mut [RawBlock],
+    mut visit: impl FnMut(&Around<'_>, &mut [RawBlock]) -> (Block, u8),
+) {
+    let [columns, rows] = shape.windows().each_ref().map(|windows| lines(windows));
+    let [columns, rows] = [positions(&columns), positions(&rows)];
+    let runs: Vec<&[&[Line]]> = columns.chunk_by(|a, b| same_cameras(a, b)).collect();
+    let mut grid = Grid::new(shape, &columns);
+    for rows in &rows {
+        for run in &runs {
+            grid.take_contexts(run[0]);
+            for columns in *run {
+                grid.enter(&rows[0], columns, tile);
+                for (row, below) in rows.iter().zip(1..).map(|(row, next)| (row, rows.get(next))) {
+                    grid.visit_row(row, below, tile, &mut visit);
+                }
+            }
+            grid.keep_contexts(run[0]);
+        }
+    }
+}
+
+/// A column of cameras at a column of positions that its window holds; or the same of rows.
+#[derive(Clone, Copy)]
+struct Line {
+    /// The position along the axis, blocks from the first of the whole image.
+    position: u32,
+    /// Number of the column or row in the tile.
+    camera: u32,
+    /// Whether the window begins here.
+    first: bool,
+    /// Where this is in the tile's picture, blocks.
+    place: u32,
+}
+
+/// All lines of an axis, by position, then by camera.
+fn lines(windows: &[Range<u32>]) -> Vec<Line> {
+    let of_camera = |(camera, window): (u32, &Range<u32>)| {
+        let start = window.start;
+        window.clone().map(move |position| (position, camera, position == start))
+    };
+    let blocks = (0..).zip(windows).flat_map(of_camera);
+    let line = |(place, (position, camera, first))| Line { position, camera, first, place };
+    let mut lines: Vec<Line> = (0..).zip(blocks).map(line).collect();
+    lines.sort_by_key(|line| line.position);
+    lines
+}
+
+/// The lines at each position that has any.
+fn positions(lines: &[Line]) -> Vec<&[Line]> {
+    lines.chunk_by(|a, b| a.position == b.position).collect()
+}
+
+/// Whether two positions have the same cameras.
+fn same_cameras(a: &[Line], b: &[Line]) -> bool {
+    a.iter().map(|line| line.camera).eq(b.iter().map(|line| line.camera))
+}
+
+/// The row of cameras that is being coded at a position.
+struct Grid {
+    /// One for each column at this position, and one more for the border on the right.
+    cells: Vec<Cell>,
+    /// How many columns there are.
+    across: usize,
+    /// The blocks of the border at the left and right ends of the row above.
+    border: [Block; 2],
+    /// The contexts of all columns of the tile, while they are not in the cells.
+    contexts: Vec<u8>,
+    /// Blocks in one row of the tile's picture.
+    pitch: usize,
+    /// [`Around::back`] by whether the camera's window begins at this row of positions, and at this column.
+    back: [[[usize; 2]; 2]; 2],
+}
+
+/// A column of cameras at a position.
+#[derive(Clone, Copy, Default)]
+struct Cell {
+    /// The last block that was coded in this column: that of the camera above.
+    block: Block,
+    /// The context of the next block.
+    context: u8,
+    /// See [`Line`].
+    first: bool,
+    place: u32,
 }
 
 impl Grid {
-    pub(super) fn new(shape: &TileShape) -> Self {
-        let [cameras, blocks] = [shape.cameras(), shape.blocks()].map(|pair| pair.map(|n| n as usize));
-        let [across, down] = cameras;
-        let cells = vec![Block::default(); (across + 2) * (down + 1)];
-        let contexts = vec![FIRST_CONTEXT; across];
-        Self { cameras, blocks, cells, contexts, here: 0, back: [usize::MAX; 2] }
+    fn new(shape: &TileShape, columns: &[&[Line]]) -> Self {
+        let most = columns.iter().map(|lines| lines.len()).max().unwrap_or(0);
+        let pitch = shape.picture_blocks()[0] as usize;
+        Self {
+            cells: vec![Cell::default(); most + 1],
+            across: 0,
+            border: [Block::default(); 2],
+            contexts: vec![FIRST_CONTEXT; shape.cameras()[0] as usize],
+            pitch,
+            back: [[[1, pitch], [pitch; 2]], [[1; 2], [usize::MAX; 2]]],
+        }
     }
 
-    /// How far apart in raster order the same blocks of neighbouring cameras are, along s and t.
-    pub(super) fn camera_steps(shape: &TileShape) -> [usize; 2] {
-        let grid = Self::new(shape);
-        [grid.blocks[0], grid.camera_pitch()]
+    /// Fetches the contexts of these columns.
+    fn take_contexts(&mut self, columns: &[Line]) {
+        for (cell, line) in self.cells.iter_mut().zip(columns) {
+            cell.context = self.contexts[line.camera as usize];
+        }
     }
 
-    /// Visits every block in coding order: `visit` takes what is around it, may look at and write the tile, and returns
-    /// the block and the number of its rows that are corrected.
+    /// Keeps the contexts of these columns for positions to come.
+    fn keep_contexts(&mut self, columns: &[Line]) {
+        for (cell, line) in self.cells.iter().zip(columns) {
+            self.contexts[line.camera as usize] = cell.context;
+        }
+    }
+
+    /// Moves on to a position, whose first row of cameras is `row`: the border above takes blocks of earlier positions.
+    fn enter(&mut self, row: &Line, columns: &[Line], tile: &[RawBlock]) {
+        let (here, back) = (row.place as usize * self.pitch, &self.back[usize::from(row.first)]);
+        for (cell, &Line { first, place, .. }) in self.cells.iter_mut().zip(columns) {
+            let block = earlier(tile, here + place as usize, back[usize::from(first)][1]);
+            *cell = Cell { block, context: cell.context, first, place };
+        }
+        self.across = columns.len();
+        self.cells[self.across].place = columns[0].place + self.pitch as u32;
+        self.border = self.ends(row, tile);
+    }
+
+    /// The border left and right of a row of cameras.
     #[inline(always)]
-    pub(super) fn walk(
-        shape: &TileShape,
+    fn ends(&self, row: &Line, tile: &[RawBlock]) -> [Block; 2] {
+        let (here, back) = (row.place as usize * self.pitch, &self.back[usize::from(row.first)]);
+        [0, self.across - 1].map(|column| {
+            let Cell { first, place, .. } = self.cells[column];
+            earlier(tile, here + place as usize, back[usize::from(first)][0])
+        })
+    }
+
+    /// Visits the blocks of a row of cameras.
+    #[inline(always)]
+    fn visit_row(
+        &mut self,
+        row: &Line,
+        below: Option<&Line>,
         tile: &mut [RawBlock],
-        mut visit: impl FnMut(&Around<'_>, &mut [RawBlock]) -> (Block, u8),
+        visit: &mut impl FnMut(&Around<'_>, &mut [RawBlock]) -> (Block, u8),
     ) {
-        let mut grid = Self::new(shape);
-        let ([across, down], rows, stride, step) = (grid.blocks, grid.cameras[1], grid.stride(), grid.blocks[0]);
-        for position in (0..down).flat_map(|y| (0..across).map(move |x| [x, y])) {
-            grid.enter(position, tile);
-            for t in 0..rows {
-                let (mut place, back) = (grid.here + t * grid.camera_pitch(), grid.back);
-                let (above, current) = grid.cells.split_at_mut((t + 1) * stride);
-                let above = above[t * stride..].windows(3).filter_map(<[Block]>::first_chunk);
-                let mut left = current[0];
-                for ((above, cell), context) in above.zip(&mut current[1..]).zip(&mut grid.contexts) {
-                    let around = Around { above, left, context: usize::from(*context), place, back };
-                    let (block, rows) = visit(&around, tile);
-                    (*context, *cell, left) = (rows.min(FIRST_CONTEXT), block, block);
-                    place += step;
-                }
-            }
+        let here = row.place as usize * self.pitch;
+        let below = below.map_or(usize::MAX, |row| row.place as usize * self.pitch);
+        let ends = self.ends(row, tile);
+        self.cells[self.across].block = self.border[1];
+        let (mut up_left, mut left, mut up) = (self.border[0], ends[0], self.cells[0].block);
+        self.border = ends;
+        let back = &self.back[usize::from(row.first)];
+        let mut cells = &mut self.cells[..=self.across];
+        while let [cell, rest @ ..] = cells
+            && let Some(right) = rest.first()
+        {
+            let (up_right, column) = (right.block, cell.place as usize);
+            let around = Around {
+                above: [up_left, up, up_right],
+                left,
+                context: usize::from(cell.context),
+                place: here + column,
+                back: &back[usize::from(cell.first)],
+                next: [here + right.place as usize, below.saturating_add(column)],
+            };
+            let (block, rows) = visit(&around, tile);
+            (cell.block, cell.context) = (block, rows.min(FIRST_CONTEXT));
+            (up_left, up, left) = (up, up_right, block);
+            cells = rest;
         }
-    }
-
-    fn stride(&self) -> usize {
-        self.cameras[0] + 2
-    }
-
-    /// Blocks in one row of the tile.
-    fn pitch(&self) -> usize {
-        self.cameras[0] * self.blocks[0]
-    }
-
-    /// Raster distance between the blocks of cameras that are neighbours along t.
-    fn camera_pitch(&self) -> usize {
-        self.pitch() * self.blocks[1]
-    }
-
-    /// Moves on to a position: the border of the grid takes blocks of earlier positions from the tile.
-    fn enter(&mut self, [x, y]: [usize; 2], tile: &[RawBlock]) {
-        self.here = y * self.pitch() + x;
-        self.back = match (x, y) {
-            (0, 0) => [usize::MAX; 2],
-            (0, _) => [self.pitch(); 2],
-            (_, 0) => [1; 2],
-            _ => [1, self.pitch()],
-        };
-        let ([across, down], stride, [west, north]) = (self.cameras, self.stride(), self.back);
-        let last = (across - 1) * self.blocks[0];
-        for s in 0..across {
-            self.cells[s + 1] = earlier(tile, self.here + s * self.blocks[0], north);
-        }
-        for t in 0..down {
-            let (row, place) = ((t + 1) * stride, self.here + t * self.camera_pitch());
-            self.cells[row] = earlier(tile, place, west);
-            self.cells[row + stride - 1] = earlier(tile, place + last, west);
-        }
-        self.cells[0] = self.cells[stride];
-        self.cells[stride - 1] = self.cells[2 * stride - 1];
     }
 }
 

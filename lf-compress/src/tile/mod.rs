@@ -14,6 +14,9 @@
 //! describes the bytes. A tile of 8×8 cameras of 128×128 texels has 1.16 bits a texel where zstd on the same blocks, in
 //! the same order, needs 1.66, and decodes at about four fifths of zstd's speed. Random access is by tile.
 //!
+//! Images may be whole or cropped: a tile holds a window of each camera's image ([`TileShape::windowed`]), and the
+//! neighbours of a block are the nearest cameras whose windows hold its position.
+//!
 //! [`optimise`] goes further: it trades error for bits, in blocks that any BC1 decoder reads.
 
 mod block;
@@ -24,89 +27,37 @@ mod encode;
 mod fit;
 mod grid;
 mod rdo;
+mod shape;
 mod streams;
 mod transfer;
 
-pub use decode::decode;
+pub use decode::{decode, decode_into};
 pub use encode::encode;
 pub use rdo::{RdoOptions, optimise};
+pub use shape::TileShape;
 
 use std::io;
 
-use block::RawBlock;
 use thiserror::Error;
-
-use crate::bc1::BLOCK_BYTES;
 
 /// The level of zstd that tiles are packed at in files: above it time grows, but nothing shrinks.
 pub const LEVEL: i32 = 19;
-
-/// How many cameras a tile holds, and how many blocks each camera's image has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct TileShape {
-    cameras: [u32; 2],
-    blocks: [u32; 2],
-}
-
-/// Blocks in a tile at most: its streams are then shorter than 2³² bytes.
-const MAX_BLOCKS: u64 = 1 << 28;
-
-impl TileShape {
-    /// A tile of `cameras` images along (s, t), each of `blocks` 4×4 blocks along (u, v), all at least 1. The image of
-    /// camera (s, t) is at column s and row t of the tile's picture.
-    ///
-    /// # Errors
-    /// [`TileError::Shape`] if a number is 0 or there are more than 2²⁸ blocks, 2 GiB.
-    pub fn new(cameras: [u32; 2], blocks: [u32; 2]) -> Result<Self, TileError> {
-        let all = [cameras, blocks].concat().into_iter().fold(1, |product: u64, n| product.saturating_mul(n.into()));
-        if all == 0 || all > MAX_BLOCKS {
-            return Err(TileError::Shape { cameras, blocks });
-        }
-        Ok(Self { cameras, blocks })
-    }
-
-    /// Cameras along s and t.
-    #[must_use]
-    pub fn cameras(&self) -> [u32; 2] {
-        self.cameras
-    }
-
-    /// Blocks of one image along u and v.
-    #[must_use]
-    pub fn blocks(&self) -> [u32; 2] {
-        self.blocks
-    }
-
-    /// Bytes of the tile's blocks: 8 for each.
-    #[must_use]
-    pub fn raw_len(&self) -> usize {
-        BLOCK_BYTES * self.block_count()
-    }
-
-    fn block_count(&self) -> usize {
-        [self.cameras, self.blocks].concat().into_iter().map(|n| n as usize).product()
-    }
-
-    /// The blocks in `bytes`, if there are as many as there should be.
-    fn check<'a>(&self, bytes: &'a [u8]) -> Result<&'a [RawBlock], TileError> {
-        match bytes.as_chunks() {
-            (blocks, []) if blocks.len() == self.block_count() => Ok(blocks),
-            _ => Err(TileError::BlockBytes { expected: self.raw_len(), found: bytes.len() }),
-        }
-    }
-}
 
 /// Why a tile could not be packed or unpacked.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TileError {
     /// No tile has this shape.
-    #[error("a tile of {cameras:?} cameras with {blocks:?} blocks is empty or holds more than 2^28 blocks")]
+    #[error(
+        "a tile of {0}×{1} cameras whose picture has {2}×{3} blocks is empty or too large: there may be 65536 columns \
+         and rows of cameras, and 2^28 blocks",
+        cameras[0], cameras[1], blocks[0], blocks[1]
+    )]
     Shape {
-        /// Cameras along s and t.
-        cameras: [u32; 2],
-        /// Blocks of one image along u and v.
-        blocks: [u32; 2],
+        /// Columns and rows of cameras.
+        cameras: [u64; 2],
+        /// Blocks of the picture along u and v.
+        blocks: [u64; 2],
     },
     /// The blocks do not fill the tile.
     #[error("the tile has {expected} bytes of blocks, {found} were given")]

@@ -5,7 +5,7 @@ use super::choice::{Choice, Ends, Prediction, SOURCES, cheapest, mode, ways};
 use super::cost::{Costs, Counts};
 use super::encode::walk;
 use super::fit::{Errors, Target, smaller};
-use super::grid::Grid;
+use super::grid;
 use super::{TileError, TileShape};
 use crate::bc1::Texel;
 
@@ -52,7 +52,7 @@ pub fn optimise(shape: &TileShape, texels: &[Texel], blocks: &mut [u8], options:
         return Err(TileError::TexelCount { expected: 16 * tile.len(), found: texels.len() });
     }
     if options.lambda > 0.0 {
-        let picture = Picture { texels, width: 4 * (shape.cameras()[0] * shape.blocks()[0]) as usize };
+        let picture = Picture { texels, width: 4 * shape.picture_blocks()[0] as usize };
         let originals = tile.clone();
         let mut counts = Counts::new();
         walk(shape, &mut tile, &Costs::guess(), |context, choice, _| counts.add(context, choice));
@@ -75,8 +75,7 @@ fn pass(
     max_loss: f32,
 ) -> Counts {
     let mut counts = Counts::new();
-    let next_cameras = Grid::camera_steps(shape);
-    Grid::walk(shape, tile, |around, tile| {
+    grid::walk(shape, tile, |around, tile| {
         let place = around.place;
         let prediction = Prediction::new(around, tile);
         let original = Block::from_raw(originals[place]);
@@ -84,8 +83,8 @@ fn pass(
         let (block, choice) = if texels.iter().all(|texel| texel[3] == 0) {
             (original, cheapest(original, &prediction, costs))
         } else {
-            let [left, below] = next_cameras.map(|step| *tile.get(place + step).unwrap_or(&tile[place]));
-            let others = [left, below, tile[place]].map(|raw| Block::from_raw(raw).ends);
+            let [right, below] = around.next.map(|next| *tile.get(next).unwrap_or(&tile[place]));
+            let others = [right, below, tile[place]].map(|raw| Block::from_raw(raw).ends);
             let search = Search::new(&texels, original, max_loss, &prediction, costs);
             search.run(others)
         };

@@ -24,5 +24,6 @@ fn probe_fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
         return vec4f(0.0);
     }
     let probe = probes[index];
-    return vec4f(fetch_camera(probe.face, probe.camera, probe.uv), 1.0);
+    let texel = fetch_camera(probe.face, probe.camera, probe.uv);
+    return vec4f(displayed(texel.rgb), texel.a);
 }

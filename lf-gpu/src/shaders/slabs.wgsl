@@ -1,5 +1,6 @@
 // Light field slabs: Figs. 6 and 8 of Yu, Yang & McMillan in one pass. CPU twins: lf-math/src/slab.rs, lf-ibr/src/slabs.rs.
-// `fetch` comes from volume.wgsl or array.wgsl.
+// `fetch` comes from volume.wgsl or array.wgsl, `fetch_camera` and `make_up` from whole.wgsl or cropped.wgsl, `displayed` from
+// srgb.wgsl or linear.wgsl.
 
 // One slab; pairs are along (s, t) or (u, v). Mirrors `SlabUniform` in uniforms.rs.
 struct Slab {
@@ -23,6 +24,8 @@ struct Slab {
     // Slices per row of camera groups.
     groups_s: u32,
     padding: vec2u,
+    // For cropped slabs, rows of the window table: where those of the camera columns, of the camera rows and of the mask begin.
+    table: vec4u,
 }
 
 struct Slabs {
@@ -35,16 +38,6 @@ struct Slabs {
 
 @group(0) @binding(1) var<uniform> slabs: Slabs;
 @group(0) @binding(2) var bilinear: sampler;
-
-// A bilinear fetch from one camera's image; `uv` in index units within 0 … last, so that all four texels are its own.
-fn fetch_camera(face: u32, camera: vec2u, uv: vec2f) -> vec3f {
-    let pitch = slabs.faces[face].pitch;
-    let per_slice = slabs.faces[face].cameras_per_slice;
-    let group = camera / per_slice;
-    let corner = (camera - group * per_slice) * pitch;
-    let slice = slabs.faces[face].first_slice + group.y * slabs.faces[face].groups_s + group.x;
-    return fetch((vec2f(corner) + uv + 0.5) * slabs.texel_scale.xy, slice);
-}
 
 // The face of the component of largest magnitude; on a tie the first of x, y, z.
 fn dominant_axis(direction: vec3f) -> u32 {
@@ -78,14 +71,14 @@ fn look_up(origin: vec3f, direction: vec3f) -> vec3f {
     // Eq. 5: the four cameras around it; the last is reached with weight 1 from the last but one.
     let base = min(floor(st), max(slab.st_last - 1.0, vec2f(0.0)));
     let fraction = st - base;
-    var color = vec3f(0.0);
+    var sum = vec4f(0.0);
     for (var i = 0u; i < 4u; i++) {
         let corner = vec2f(f32(i & 1u), f32(i >> 1u));
         let shares = (1.0 - corner) + (2.0 * corner - 1.0) * fraction;
         let camera = min(base + corner, slab.st_last);
         // Eq. 6, and never past the image's own texels.
         let tap = clamp(uv + slab.disparity * (st - camera), vec2f(0.0), slab.uv_last);
-        color += shares.x * shares.y * fetch_camera(face, vec2u(camera), tap);
+        sum += shares.x * shares.y * fetch_camera(face, vec2u(camera), tap);
     }
-    return color;
+    return displayed(make_up(sum));
 }

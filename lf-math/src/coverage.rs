@@ -1,0 +1,270 @@
+//! Which texels of a slab are needed: the separable crop.
+//!
+//! A ray that passes through the cell leads from a point of the cell to the camera plane. With the plane on the cell's
+//! face, a camera at a distance a outside the cell's edge is met only along slopes of at least a/l, l being the cell's
+//! depth; the range of useful slopes u hangs on s alone, that of v on t alone. Each camera column then has one window
+//! along u and each row one along v, and the windows of all images tile one rectangle without gaps.
+//!
+//! In the limit of many cameras this keeps a quarter of the samples of a cube cell with planes on its faces. Exactly
+//! needed are 2/9 of them, since both slopes of a ray share the depth at which it left the cell; that set is not
+//! separable, and takes an index for each camera. With the planes through the cell's centre nothing can be left out so.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use crate::error::GeometryError;
+use crate::{Cell, SampledAxis, Slab};
+
+/// The texels that are kept of a slab: a window of each image, the same along u for all cameras of a column and along v for
+/// all cameras of a row, and which cameras there are at all.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Coverage {
+    resolution: [u32; 2],
+    columns: Vec<Range<u32>>,
+    rows: Vec<Range<u32>>,
+    /// By camera, t·columns + s. Empty if none is left out.
+    kept: Vec<bool>,
+}
+
+/// Relative rounding error of `f32`, 2⁻²⁴.
+const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;
+
+impl Coverage {
+    /// Everything.
+    #[must_use]
+    pub fn whole(slab: &Slab) -> Self {
+        let ([s, t], [u, v]) = (slab.cameras(), slab.resolution());
+        let windows = |count: u32, texels: u32| (0..count).map(|_| 0..texels).collect();
+        Self { resolution: [u, v], columns: windows(s, u), rows: windows(t, v), kept: Vec::new() }
+    }
+
+    /// The texels that [`Slab::taps`] and bilinear interpolation use, with a weight greater than 0, for any ray whose
+    /// dominant face is the slab's and whose origin lies in `cell`, rounding in `f32` included. Windows may be empty.
+    #[must_use]
+    pub fn of_cell(slab: &Slab, cell: &Cell) -> Self {
+        let [columns, rows] = [0, 1].map(|i| Shadow::new(slab, cell, i).windows());
+        Self { resolution: slab.resolution(), columns, rows, kept: Vec::new() }
+    }
+
+    /// The texels in given windows, in texels: `columns` along u for each s, `rows` along v for each t.
+    ///
+    /// # Errors
+    /// There must be a window for each column and row of the slab's cameras, within its images.
+    pub fn new(slab: &Slab, columns: Vec<Range<u32>>, rows: Vec<Range<u32>>) -> Result<Self, GeometryError> {
+        let (cameras, resolution) = (slab.cameras(), slab.resolution());
+        for (i, windows) in [&columns, &rows].into_iter().enumerate() {
+            let (len, expected) = (windows.len(), cameras[i] as usize);
+            if len != expected {
+                return Err(GeometryError::Length { what: "windows of a slab", len, expected });
+            }
+            if let Some(window) = windows.iter().find(|w| w.start > w.end || w.end > resolution[i]) {
+                return Err(GeometryError::Window { start: window.start, end: window.end, texels: resolution[i] });
+            }
+        }
+        let [columns, rows] = [columns, rows].map(|windows| windows.into_iter().map(plain).collect());
+        Ok(Self { resolution, columns, rows, kept: Vec::new() })
+    }
+
+    /// The same without the cameras for which `kept`, by t·columns + s, is false.
+    ///
+    /// # Errors
+    /// There must be one value for each camera.
+    pub fn with_cameras(self, kept: Vec<bool>) -> Result<Self, GeometryError> {
+        let (len, expected) = (kept.len(), self.columns.len() * self.rows.len());
+        if len != expected {
+            return Err(GeometryError::Length { what: "camera mask", len, expected });
+        }
+        let kept = if kept.iter().all(|&kept| kept) { Vec::new() } else { kept };
+        Ok(Self { kept, ..self })
+    }
+
+    /// What is kept by this and by another coverage of the same slab. Columns and rows that one of them lacks are empty.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        let both = |a: &[Range<u32>], b: &[Range<u32>]| {
+            let common = |(a, b): (&Range<u32>, &Range<u32>)| a.start.max(b.start)..a.end.min(b.end);
+            a.iter().zip(b).map(common).map(plain).collect()
+        };
+        let keeps = |coverage: &Self, camera: usize| coverage.kept.get(camera).is_none_or(|&kept| kept);
+        let masked =
+            if self.kept.is_empty() && other.kept.is_empty() { 0 } else { self.columns.len() * self.rows.len() };
+        Self {
+            resolution: self.resolution,
+            columns: both(&self.columns, &other.columns),
+            rows: both(&self.rows, &other.rows),
+            kept: (0..masked).map(|camera| keeps(self, camera) && keeps(other, camera)).collect(),
+        }
+    }
+
+    /// The same with windows rounded out to multiples of `block` texels, as far as the images reach.
+    #[must_use]
+    pub fn aligned(mut self, block: u32) -> Self {
+        for (windows, texels) in [&mut self.columns, &mut self.rows].into_iter().zip(self.resolution) {
+            for window in windows.iter_mut().filter(|window| window.start < window.end) {
+                let end = window.end.checked_next_multiple_of(block).unwrap_or(texels);
+                *window = window.start / block * block..end.min(texels);
+            }
+        }
+        self
+    }
+
+    /// The window along u of each column of cameras, texels.
+    #[must_use]
+    pub fn columns(&self) -> &[Range<u32>] {
+        &self.columns
+    }
+
+    /// The window along v of each row of cameras, texels.
+    #[must_use]
+    pub fn rows(&self) -> &[Range<u32>] {
+        &self.rows
+    }
+
+    /// Texels of a whole image along u and v.
+    #[must_use]
+    pub fn resolution(&self) -> [u32; 2] {
+        self.resolution
+    }
+
+    /// The windows of a camera (s, t) along u and v; `None` if there is no such camera or nothing of it is kept.
+    #[must_use]
+    pub fn window(&self, [s, t]: [u32; 2]) -> Option<[Range<u32>; 2]> {
+        let (s, t) = (s as usize, t as usize);
+        let (u, v) = (self.columns.get(s)?, self.rows.get(t)?);
+        let kept = self.kept.get(t * self.columns.len() + s).is_none_or(|&kept| kept);
+        (kept && !u.is_empty() && !v.is_empty()).then(|| [u.clone(), v.clone()])
+    }
+
+    /// Whether all of every image is kept.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        let whole = |windows: &[Range<u32>], texels| windows.iter().all(|window| *window == (0..texels));
+        self.kept.is_empty() && whole(&self.columns, self.resolution[0]) && whole(&self.rows, self.resolution[1])
+    }
+
+    /// All cameras of the slab, kept or not: s fastest, then t.
+    pub fn cameras(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let (across, down) = (self.columns.len() as u32, self.rows.len() as u32);
+        (0..down).flat_map(move |t| (0..across).map(move |s| [s, t]))
+    }
+
+    /// Whether anything is kept.
+    #[must_use]
+    pub fn keeps_any(&self) -> bool {
+        let filled = |windows: &[Range<u32>]| windows.iter().any(|window| window.start < window.end);
+        // Without a mask no camera need be tried.
+        let any_camera = || self.cameras().any(|camera| self.window(camera).is_some());
+        filled(&self.columns) && filled(&self.rows) && (self.kept.is_empty() || any_camera())
+    }
+
+    /// Whether every camera whose windows are not empty is kept.
+    #[must_use]
+    pub fn keeps_all_cameras(&self) -> bool {
+        let width = self.columns.len();
+        let empty = |i: usize| self.columns[i % width].is_empty() || self.rows[i / width].is_empty();
+        self.kept.iter().enumerate().all(|(i, &kept)| kept || empty(i))
+    }
+
+    /// How many texels are kept.
+    #[must_use]
+    pub fn texels(&self) -> u64 {
+        let area = |[u, v]: [Range<u32>; 2]| u.len() as u64 * v.len() as u64;
+        self.cameras().filter_map(|camera| self.window(camera)).map(area).sum()
+    }
+}
+
+/// One way to say that a window is empty.
+fn plain(window: Range<u32>) -> Range<u32> {
+    if window.is_empty() { 0..0 } else { window }
+}
+
+/// One axis of the problem: what the cell's points see of the cameras along s (or t) and their slopes u (or v).
+struct Shadow {
+    cameras: SampledAxis,
+    slopes: SampledAxis,
+    /// Texels per camera.
+    disparity: f64,
+    /// Distance along the face from a point of the cell to the camera plane: least and greatest. Negative behind it.
+    run: [f64; 2],
+    half_extent: f64,
+    /// Bounds on the rounding error of [`Slab::index_ray`] and [`Slab::taps`], in cameras and in texels.
+    slack: [f64; 2],
+}
+
+impl Shadow {
+    fn new(slab: &Slab, cell: &Cell, i: usize) -> Self {
+        let (face, half) = (slab.face(), cell.half_extent().as_dvec3());
+        let (cameras, slopes) = (slab.st()[i], slab.uv()[i]);
+        let plane = f64::from(face.sign() * slab.plane());
+        let (depth, half_extent) = (half[face.axis()], half[face.tangents()[i]]);
+        let disparity = f64::from(slab.disparity()[i]);
+        let ends = |axis: &SampledAxis| f64::from(axis.first().abs()) + f64::from(axis.last().abs());
+        let positions = half_extent + plane.abs() + depth + ends(&cameras);
+        let texels = (1.0 + ends(&slopes)) / f64::from(slopes.step()) + f64::from(slopes.count());
+        let slack = [
+            positions / f64::from(cameras.step()) + f64::from(cameras.count()),
+            texels + disparity * f64::from(cameras.count() + 2),
+        ];
+        Self {
+            cameras,
+            slopes,
+            disparity,
+            run: [plane - depth, plane + depth],
+            half_extent,
+            slack: slack.map(|sum| 8.0 * UNIT_ROUNDOFF * sum),
+        }
+    }
+
+    fn windows(&self) -> Vec<Range<u32>> {
+        (0..self.cameras.count()).map(|i| self.window(i)).collect()
+    }
+
+    /// The texels of camera `i` that rays use. It serves the rays that cross the plane less than one camera away, and the
+    /// outermost cameras those beyond them, too.
+    fn window(&self, i: u32) -> Range<u32> {
+        let last = self.cameras.count() - 1;
+        let at = |index: f64| f64::from(self.cameras.first()) + index * f64::from(self.cameras.step());
+        let low = if i == 0 { f64::NEG_INFINITY } else { at(f64::from(i) - 1.0 - self.slack[0]) };
+        let high = if i == last { f64::INFINITY } else { at(f64::from(i) + 1.0 + self.slack[0]) };
+        let Some([least, most]) = self.slopes_between(low, high) else { return 0..0 };
+        let index = |slope: f64| (slope - f64::from(self.slopes.first())) / f64::from(self.slopes.step());
+        // Cameras are asked for other slopes than the ray's own: by one disparity at most, and none beyond the ends.
+        let before = if i == 0 { 0.0 } else { self.disparity };
+        let after = if i == last { 0.0 } else { self.disparity };
+        let end = f64::from(self.slopes.count() - 1);
+        let first = libm::floor((index(least) - before - self.slack[1]).clamp(0.0, end));
+        let last = libm::ceil((index(most) + after + self.slack[1]).clamp(0.0, end));
+        first as u32..last as u32 + 1
+    }
+
+    /// Least and greatest slope of the rays from the cell that cross the plane between `low` and `high`: all slopes w
+    /// from −1 to 1 for which a run r and a point x of the cell exist with x + r·w between the two.
+    fn slopes_between(&self, low: f64, high: f64) -> Option<[f64; 2]> {
+        let reach = [low - self.half_extent, high + self.half_extent];
+        let up = slopes_from_zero(self.run, reach);
+        let down = slopes_from_zero([-self.run[1], -self.run[0]], reach).map(|[least, most]| [-most, -least]);
+        match (up, down) {
+            (Some([_, most]), Some([least, _])) => Some([least, most]),
+            (one, other) => one.or(other),
+        }
+    }
+}
+
+/// The slopes w from 0 to 1 for which r·w lies in `reach` for some r in `run`.
+fn slopes_from_zero([nearest, farthest]: [f64; 2], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+    let [least, most] = at_most(at_most([0.0, 1.0], nearest, high), -farthest, -low);
+    (least <= most).then_some([least, most])
+}
+
+/// The part of an interval of w in which factor·w ≤ bound; least above most if there is none.
+fn at_most([least, most]: [f64; 2], factor: f64, bound: f64) -> [f64; 2] {
+    if factor > 0.0 {
+        [least, most.min(bound / factor)]
+    } else if factor < 0.0 {
+        [least.max(bound / factor), most]
+    } else if bound >= 0.0 {
+        [least, most]
+    } else {
+        [1.0, 0.0]
+    }
+}
