@@ -26,10 +26,10 @@ instances:
   geom:
     value: directory[0].payload.as<geom>
   largest:
-    value: 3.4028234663852886e38
+    value: '3.4028234663852886e38'
     doc: The largest finite binary32.
   overflow:
-    value: 3.4028235677973366e38
+    value: '3.4028235677973366e38'
     doc: The least magnitude that becomes infinite when it is rounded to binary32.
 
 types:
@@ -161,6 +161,7 @@ types:
         value: >-
           tag.text > previous.tag.text
           or tag.text == previous.tag.text and (slab > previous.slab or slab == previous.slab and tile > previous.tile)
+        if: index > 0
         doc: By tag, slab and tile; for two entries of the same kind.
       padding:
         pos: previous_end
@@ -206,8 +207,8 @@ types:
         repeat: expr
         repeat-expr: 3
         valid:
-          min: -1.7976931348623157e308
-          max: 1.7976931348623157e308
+          min: '-1.7976931348623157e308'
+          max: '1.7976931348623157e308'
         doc: x, y, z in world space, metres.
         doc-ref: lfslab-1.0.md §5.1
       - id: half_extent
@@ -348,7 +349,8 @@ types:
         pos: 64 + 48 * tile_search.index
         type: >-
           tile(tile_search.index + _index,
-          _index == 0 ? 0 : tiles[_index - 1].cameras_through, _index == 0 ? 0 : tiles[_index - 1].raw_through)
+          _index == 0 ? 0 : tiles[_index - 1].cameras_through,
+          _index > 0 ? tiles[_index - 1].raw_through : index > 0 ? _parent.slabs[index - 1].tiles.last.raw_through : 0)
         repeat: until
         repeat-until: _.is_last
         doc-ref: lfslab-1.0.md §7.1
@@ -536,7 +538,7 @@ types:
         doc: Stored cameras in the slab's tiles before this one.
       - id: raw_before
         type: u8
-        doc: Bytes of the slab's tiles before this one, unpacked.
+        doc: Bytes of all tiles before this one, unpacked.
     seq:
       - id: tag
         contents: TILE
@@ -697,7 +699,8 @@ types:
         valid:
           expr: content_size >= least and content_size <= most and (not is_single_segment or content_size <= 0x80_0000)
       - id: blocks
-        type: zstd_block
+        type: >-
+          zstd_block(_index == 0 ? 0 : blocks[_index - 1].least_through, _index == 0 ? 0 : blocks[_index - 1].most_through)
         repeat: until
         repeat-until: _.is_last
       - id: checksum
@@ -706,14 +709,20 @@ types:
       - id: rest
         size-eos: true
         valid:
-          expr: _.length == 0
-        doc: Nothing follows the frame.
+          expr: _.length == 0 and content_size >= blocks.last.least_through and content_size <= blocks.last.most_through
+        doc: Nothing follows the frame. Its blocks can have the content that it states.
     instances:
       content_size:
         value: 'stated_size + (content_size_flag == 1 ? 256 : 0)'
 
   zstd_block:
     doc-ref: RFC 8878 section 3.1.1.2
+    params:
+      - id: least_before
+        type: u8
+        doc: Bytes that the blocks before this one hold, at least and at most, when unpacked.
+      - id: most_before
+        type: u8
     seq:
       - id: is_last
         type: b1
@@ -724,8 +733,15 @@ types:
           in-enum: true
       - id: len_content
         type: b21
+        valid:
+          max: 131072
       - id: content
         size: 'kind == zstd_block_kind::repeated ? 1 : len_content'
+    instances:
+      least_through:
+        value: 'least_before + (kind == zstd_block_kind::compressed ? 0 : len_content)'
+      most_through:
+        value: 'most_before + (kind == zstd_block_kind::compressed ? 131072 : len_content)'
 
   meta:
     doc: Text for people and tools.

@@ -6,8 +6,13 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::{DVec3, Vec3};
+use lf_compress::PackOptions;
 use lf_compress::bc1::Quality;
+use lf_compress::tile::RdoOptions;
+use lf_format::TexelEncoding;
 use lf_math::PlanePlacement;
+
+use crate::exchange_args::{ExportArgs, ImportArgs};
 
 /// Reflections with parallax from light field slabs: capture, compress, inspect and render them.
 #[derive(Debug, Parser)]
@@ -31,6 +36,10 @@ pub(crate) enum Command {
     Validate(ValidateArgs),
     /// Leave out what no ray through the cell asks for, without encoding anything again
     Crop(CropArgs),
+    /// Write a light field in another program's format
+    Export(ExportArgs),
+    /// Make a .lfslab file of pictures from a camera grid
+    Import(ImportArgs),
 }
 
 /// Where the light comes from.
@@ -82,6 +91,16 @@ pub(crate) struct CaptureArgs {
     /// Where the camera planes stand, instead of the preset's choice
     #[arg(long, value_enum)]
     pub(crate) planes: Option<Planes>,
+    #[command(flatten)]
+    pub(crate) encoding: EncodingArgs,
+    /// Keep the texels that no ray through the cell asks for, too
+    #[arg(long)]
+    pub(crate) whole: bool,
+}
+
+/// How texels become bytes.
+#[derive(Debug, Args)]
+pub(crate) struct EncodingArgs {
     /// How texels are stored
     #[arg(long, value_enum, default_value_t = Encoding::Bc1)]
     pub(crate) encoding: Encoding,
@@ -92,9 +111,6 @@ pub(crate) struct CaptureArgs {
     /// saves a fifth to two fifths, 100 is rough. BC1 only
     #[arg(long, value_name = "LAMBDA", default_value_t = 0.0, value_parser = lambda)]
     pub(crate) rdo: f32,
-    /// Keep the texels that no ray through the cell asks for, too
-    #[arg(long)]
-    pub(crate) whole: bool,
 }
 
 #[derive(Debug, Args)]
@@ -213,6 +229,18 @@ pub(crate) struct Sampling {
     pub(crate) placement: PlanePlacement,
     /// Rays per texel and axis.
     pub(crate) grid: u32,
+}
+
+impl EncodingArgs {
+    /// The encoding, and the options of the block encoder.
+    pub(crate) fn options(&self) -> (TexelEncoding, PackOptions) {
+        let encoding = match self.encoding {
+            Encoding::Bc1 => TexelEncoding::Bc1,
+            Encoding::Rgba8 => TexelEncoding::Rgba8,
+        };
+        let rdo = RdoOptions { lambda: self.rdo, ..RdoOptions::default() };
+        (encoding, PackOptions { quality: self.quality, rdo })
+    }
 }
 
 impl FileArgs {

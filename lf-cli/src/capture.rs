@@ -3,13 +3,12 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
-use lf_compress::tile::RdoOptions;
 use lf_compress::{PackOptions, PackedLightField};
 use lf_format::{Metadata, TexelEncoding};
 use lf_math::{Coverage, Image, LightFieldGeometry, PlanePlacement, SlabTexels};
 use lf_scene::{Capture, capture_slabs};
 
-use crate::args::{CaptureArgs, Encoding, Planes, Sampling};
+use crate::args::{CaptureArgs, Planes, Sampling};
 use crate::output::{check_writable, megabytes, print, progress_bar};
 use crate::sources::Source;
 
@@ -31,12 +30,8 @@ pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
     if !args.whole {
         crop(&mut captured)?;
     }
-    let encoding = match args.encoding {
-        Encoding::Bc1 => TexelEncoding::Bc1,
-        Encoding::Rgba8 => TexelEncoding::Rgba8,
-    };
-    let rdo = RdoOptions { lambda: args.rdo, ..RdoOptions::default() };
-    let packed = encode(&captured, encoding, &PackOptions { quality: args.quality, rdo })?.0;
+    let (encoding, options) = args.encoding.options();
+    let packed = encode(&captured, encoding, &options)?.0;
     let bytes = packed.save(&args.out, metadata(&source)?)?;
     print(&format!("{}: {}", args.out.display(), megabytes(bytes)))
 }

@@ -9,6 +9,8 @@ mod capture;
 mod crop;
 mod demo;
 mod device;
+mod exchange;
+mod exchange_args;
 mod frames;
 mod info;
 mod input;
@@ -43,5 +45,7 @@ fn run(command: &Command) -> Result<()> {
         Command::Info(args) => info::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Crop(args) => crop::run(args),
+        Command::Export(args) => exchange::run_export(args),
+        Command::Import(args) => exchange::run_import(args),
     }
 }

@@ -18,7 +18,7 @@ use crate::picture::{Unit, cameras_of};
 /// [`PackError::Tile`] with the rule that is broken.
 pub fn check_tile(stored: &StoredTile<'_>, tiling: &SlabTiling, slab: usize, tile: u32) -> Result<(), PackError> {
     let mut unpacked = Vec::new();
-    let raw = if stored.packing == Packing::None {
+    let raw = if stored.packing == Packing::None && stored.bytes.len() as u64 == stored.raw_len {
         stored.bytes
     } else {
         unpacked.resize(usize::try_from(stored.raw_len).unwrap_or(usize::MAX), 0);

@@ -28,6 +28,7 @@ pub use file::{decode_into, unpack_into};
 /// The container crate, whose types the packed light field speaks.
 pub use lf_format as format;
 pub use packed::{PackOptions, PackedLightField};
+pub use picture::rgba16f;
 pub use validate::{Finding, Severity, validate};
 
 #[cfg(doctest)]

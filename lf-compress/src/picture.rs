@@ -99,3 +99,10 @@ impl Unit {
         (y / self.texels) as usize * self.row_bytes(width) + self.row_bytes(x)
     }
 }
+
+/// RGB half floats as the RGBA half floats that graphics devices take: the fourth is 1.
+#[must_use]
+pub fn rgba16f(rgb: &[u8]) -> Vec<u8> {
+    let opaque = |&[a, b, c, d, e, f]: &[u8; 6]| [a, b, c, d, e, f, 0x00, 0x3C];
+    rgb.as_chunks().0.iter().flat_map(opaque).collect()
+}

@@ -7,9 +7,12 @@
 //! equally many slices: six slabs of 32×32 cameras × 128×128 texels take 8 slots of 1024×1024×16 in 1024×1024×128, 64 MiB in
 //! BC1. Cropped slabs would lose to rounding what they gain, and slabs follow each other without gaps.
 
-use lf_format::{CameraPlace, SlabTiling};
+use lf_format::{CameraPlace, SlabTiling, TexelEncoding};
 use lf_math::{Coverage, Slab};
 use thiserror::Error;
+
+use crate::picture::Unit;
+use crate::{PackError, PackedLightField, rgba16f};
 
 /// Edge length in texels that a slice has where camera images are small enough: the paper's 1024.
 ///
@@ -151,6 +154,35 @@ impl VolumeLayout {
         let CameraPlace { corner, window, .. } = part.tiling.place(camera)?;
         let at = |i: usize| Some(window[i].start + texel[i].checked_sub(corner[i])?).filter(|u| window[i].contains(u));
         Some(Sample { slab, camera, texel: [at(0)?, at(1)?] })
+    }
+}
+
+impl PackedLightField {
+    /// The slices of the volume as a graphics API takes them, each whole: rows of BC1 blocks, of RGBA8 texels, or of RGBA half
+    /// floats for half-float texels. What no tile covers is zero. All slabs must have the same encoding.
+    ///
+    /// # Errors
+    /// [`PackError::Encoding`] if a slab has another than the first.
+    pub fn volume_slices(&self) -> Result<Vec<Vec<u8>>, PackError> {
+        let encoding = self.tilings()[0].encoding();
+        if let Some(other) = self.tilings().iter().find(|tiling| tiling.encoding() != encoding) {
+            return Err(PackError::Encoding(other.encoding()));
+        }
+        let ([width, height, depth], unit) = (self.layout().size(), Unit::of(encoding));
+        let rows = (height / unit.texels) as usize;
+        let mut slices = vec![vec![0; unit.row_bytes(width) * rows]; depth as usize];
+        for (slab, layout) in self.layout().slabs().iter().enumerate() {
+            for (number, tile) in layout.tiling().stored_tiles().zip(self.tiles(slab)) {
+                let Some(slice) = layout.slice(number) else { continue };
+                let tile_row = unit.row_bytes(layout.tiling().tile_size(number)[0]);
+                let rows = slices[slice as usize].chunks_exact_mut(unit.row_bytes(width));
+                rows.zip(tile.chunks_exact(tile_row)).for_each(|(to, from)| to[..tile_row].copy_from_slice(from));
+            }
+        }
+        if encoding == TexelEncoding::Rgb16F {
+            slices = slices.iter().map(|slice| rgba16f(slice)).collect();
+        }
+        Ok(slices)
     }
 }
 

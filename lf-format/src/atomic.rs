@@ -16,9 +16,9 @@ const STALE_AFTER: Duration = Duration::from_secs(60);
 /// whatever happens.
 ///
 /// The bytes go to a temporary file in the same folder. To commit is to flush it to the disk and rename it onto `path`; on Unix
-/// the folder is flushed too. Dropping an `AtomicFile` removes the temporary file. The new file gets the permissions that any
-/// new file gets, not those of the one it replaces. A symbolic link at `path`, to a regular file or to nothing, is itself
-/// replaced, not followed.
+/// the folder is flushed too, if its file system can. Of several files that are committed to one path the last stays. Dropping
+/// an `AtomicFile` removes the temporary file. The new file gets the permissions that any new file gets, not those of the one
+/// it replaces. A symbolic link at `path`, to a regular file or to nothing, is itself replaced, not followed.
 ///
 /// A process that is killed half-way leaves a file named `.lfslab-….tmp` behind. The owner of such a file holds a lock on
 /// it; [`create`](Self::create) removes those in the folder that are a minute old and that nobody holds.
@@ -53,8 +53,8 @@ impl AtomicFile {
     /// Puts the file in place and returns its length in bytes.
     ///
     /// # Errors
-    /// Whatever the file system returns. The target is then untouched and the temporary file is gone; only if the last step fails,
-    /// flushing the folder, the new file is already in place.
+    /// Whatever the file system returns. The target is then untouched and the temporary file is gone, if it can be removed; only if
+    /// the last step fails, flushing the folder, the new file is already in place.
     pub fn commit(self) -> io::Result<u64> {
         let file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
         file.as_file().sync_all()?;

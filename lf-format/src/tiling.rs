@@ -22,6 +22,8 @@ pub struct SlabTiling {
     encoding: TexelEncoding,
     cameras_per_tile: [u32; 2],
     coverage: Coverage,
+    /// Whether cameras are left out that have a window.
+    masked: bool,
     axes: [Axis; 2],
 }
 
@@ -84,7 +86,8 @@ impl SlabTiling {
             [Axis::new(coverage.columns(), cameras_per_tile[0])?, Axis::new(coverage.rows(), cameras_per_tile[1])?];
         let [across, down] = [0, 1].map(|i: usize| u32::try_from(axes[i].extents.len()).ok());
         across?.checked_mul(down?)?;
-        Some(Self { encoding, cameras_per_tile, coverage, axes })
+        let masked = !coverage.keeps_all_cameras();
+        Some(Self { encoding, cameras_per_tile, coverage, masked, axes })
     }
 
     /// How texels are stored.
@@ -135,7 +138,9 @@ impl SlabTiling {
     #[must_use]
     pub fn stores(&self, tile: u32) -> bool {
         let [columns, rows] = self.cameras_of(tile);
-        rows.into_iter().any(|t| columns.clone().any(|s| self.coverage.window([s, t]).is_some()))
+        // Without a mask no camera need be tried: windows can leave one of four billion.
+        let any_camera = || rows.clone().any(|t| columns.clone().any(|s| self.coverage.window([s, t]).is_some()));
+        !self.tile_size(tile).contains(&0) && (!self.masked || any_camera())
     }
 
     /// The cameras of a tile along s and t; empty if there is no such tile.

@@ -105,6 +105,8 @@ impl Contents {
 #[derive(Debug)]
 pub struct Writer<W> {
     out: W,
+    /// What messages call the output.
+    name: String,
     tilings: Vec<SlabTiling>,
     extra: Vec<ExtraChunk>,
     /// Slab and tile of those that are still to come, the last first.
@@ -120,7 +122,11 @@ impl<W: Write + Seek> Writer<W> {
     /// # Errors
     /// [`FormatError::InvalidArgument`] if the tilings are not those of the slabs, there would be more than 65,536 chunks, the metadata is
     /// longer than 1 MiB or two extra chunks are alike; [`FormatError::Io`] if the output cannot be written.
-    pub fn new(mut out: W, mut contents: Contents) -> Result<Self, FormatError> {
+    pub fn new(out: W, contents: Contents) -> Result<Self, FormatError> {
+        Self::named(out, "the file".to_owned(), contents)
+    }
+
+    fn named(mut out: W, name: String, mut contents: Contents) -> Result<Self, FormatError> {
         contents.check()?;
         let extra = contents.sorted_extra()?;
         let heads = contents.heads();
@@ -128,9 +134,9 @@ impl<W: Write + Seek> Writer<W> {
         let waiting = tiles_in_order(&contents.tilings, room)?;
         let entry_count = heads.len() + waiting.len() + extra.len();
         let start = entry_offset(entry_count);
-        out.seek(SeekFrom::Start(0)).map_err(write_error)?;
+        out.seek(SeekFrom::Start(0)).map_err(|source| cannot_write(&name, source))?;
         let tilings = contents.tilings;
-        let mut writer = Self { out, tilings, extra, waiting, entries: Vec::new(), entry_count, end: 0 };
+        let mut writer = Self { out, name, tilings, extra, waiting, entries: Vec::new(), entry_count, end: 0 };
         writer.pad(start)?;
         for (tag, slab, payload) in heads {
             let len = payload.len() as u64;
@@ -186,7 +192,7 @@ impl<W: Write + Seek> Writer<W> {
             self.out.write_all(&directory)?;
             self.out.flush()
         };
-        write().map_err(write_error)?;
+        write().map_err(|source| cannot_write(&self.name, source))?;
         Ok(self.out)
     }
 
@@ -194,7 +200,7 @@ impl<W: Write + Seek> Writer<W> {
     fn chunk(&mut self, payload: &[u8], entry: impl FnOnce(u64) -> ChunkEntry) -> Result<(), FormatError> {
         self.pad(aligned(self.end))?;
         let entry = entry(self.end);
-        self.out.write_all(payload).map_err(write_error)?;
+        self.out.write_all(payload).map_err(|source| cannot_write(&self.name, source))?;
         self.end = entry.end();
         self.entries.push(entry);
         Ok(())
@@ -203,7 +209,7 @@ impl<W: Write + Seek> Writer<W> {
     /// Writes zeros up to an offset.
     fn pad(&mut self, to: u64) -> Result<(), FormatError> {
         io::copy(&mut io::Read::take(io::repeat(0), to.saturating_sub(self.end)), &mut self.out)
-            .map_err(write_error)?;
+            .map_err(|source| cannot_write(&self.name, source))?;
         self.end = to;
         Ok(())
     }
@@ -215,7 +221,9 @@ impl Writer<AtomicFile> {
     /// # Errors
     /// As [`Self::new`].
     pub fn create(path: &Path, contents: Contents) -> Result<Self, FormatError> {
-        Self::new(AtomicFile::create(path).map_err(|source| cannot_write(path, source))?, contents)
+        let name = path.display().to_string();
+        let file = AtomicFile::create(path).map_err(|source| cannot_write(&name, source))?;
+        Self::named(file, name, contents)
     }
 
     /// Ends the file and puts it in place; returns its length in bytes.
@@ -223,18 +231,14 @@ impl Writer<AtomicFile> {
     /// # Errors
     /// As [`Self::finish`].
     pub fn save(self) -> Result<u64, FormatError> {
+        let path = self.name.clone();
         let file = self.finish()?;
-        let path = file.path().to_owned();
         file.commit().map_err(|source| cannot_write(&path, source))
     }
 }
 
-fn cannot_write(path: &Path, source: io::Error) -> FormatError {
-    FormatError::io(format!("write {}", path.display()), source)
-}
-
-fn write_error(source: io::Error) -> FormatError {
-    FormatError::io("write the file", source)
+fn cannot_write(name: &str, source: io::Error) -> FormatError {
+    FormatError::io(format!("write {name}"), source)
 }
 
 /// Slab and number of all stored tiles, the last first; an error if there are more than `room`.

@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use lf_compress::PackedLightField;
 use lf_compress::bc1;
 use lf_compress::format::{SlabTiling, TexelEncoding};
+use lf_compress::{PackedLightField, rgba16f};
 use lf_math::LightFieldGeometry;
 
 use crate::error::GpuError;
@@ -245,11 +245,8 @@ fn texture_bytes(
             let texels = bc1::decode_image(width, height, tile).map_err(lf_compress::PackError::from)?;
             Ok(bytemuck::cast_slice(&texels).to_vec().into())
         }
-        TexelEncoding::Rgb16F => {
-            // No device samples three half floats: a fourth, 1, is added.
-            let opaque = |&[a, b, c, d, e, f]: &[u8; 6]| [a, b, c, d, e, f, 0x00, 0x3C];
-            Ok(tile.as_chunks().0.iter().flat_map(opaque).collect::<Vec<u8>>().into())
-        }
+        // No device samples three half floats.
+        TexelEncoding::Rgb16F => Ok(rgba16f(tile).into()),
         _ => Ok(tile.into()),
     }
 }

@@ -74,8 +74,7 @@ impl Coverage {
         if len != expected {
             return Err(GeometryError::Length { what: "camera mask", len, expected });
         }
-        let kept = if kept.iter().all(|&kept| kept) { Vec::new() } else { kept };
-        Ok(Self { kept, ..self })
+        Ok(Self { kept, ..self }.canonical())
     }
 
     /// What is kept by this and by another coverage of the same slab. Columns and rows that one of them lacks are empty.
@@ -94,6 +93,20 @@ impl Coverage {
             rows: both(&self.rows, &other.rows),
             kept: (0..masked).map(|camera| keeps(self, camera) && keeps(other, camera)).collect(),
         }
+        .canonical()
+    }
+
+    /// One way to say which cameras are kept: those with empty windows are not, and no list if all others are.
+    fn canonical(mut self) -> Self {
+        let width = self.columns.len();
+        let windowed = |i: usize| !self.columns[i % width].is_empty() && !self.rows[i / width].is_empty();
+        for (i, kept) in self.kept.iter_mut().enumerate() {
+            *kept &= windowed(i);
+        }
+        if self.kept.iter().enumerate().all(|(i, &kept)| kept == windowed(i)) {
+            self.kept = Vec::new();
+        }
+        self
     }
 
     /// The same with windows rounded out to multiples of `block` texels, as far as the images reach.
@@ -160,9 +173,7 @@ impl Coverage {
     /// Whether every camera whose windows are not empty is kept.
     #[must_use]
     pub fn keeps_all_cameras(&self) -> bool {
-        let width = self.columns.len();
-        let empty = |i: usize| self.columns[i % width].is_empty() || self.rows[i / width].is_empty();
-        self.kept.iter().enumerate().all(|(i, &kept)| kept || empty(i))
+        self.kept.is_empty()
     }
 
     /// How many texels are kept.

@@ -165,3 +165,21 @@ proptest! {
         prop_assert!((found.start as f32) >= least - 4.0 && (found.end as f32) <= most + 5.0, "{found:?} {least} {most}");
     }
 }
+
+/// There is one way to write each coverage, so that equal ones compare equal.
+#[test]
+fn coverages_are_canonical() {
+    let axis = |count| SampledAxis::spanning(-1.0, 1.0, count).unwrap();
+    let slab = Slab::new(Face::PosX, 0.5, [axis(2), axis(2)], [axis(4), axis(4)], None).unwrap();
+    let windows = || Coverage::new(&slab, vec![0..4, 3..3], vec![1..4, 2..4]).unwrap();
+    assert_eq!(windows(), Coverage::new(&slab, vec![0..4, 0..0], vec![1..4, 2..4]).unwrap());
+    // The second column has no camera to be kept or not.
+    for kept in [[true, false, true, false], [true, true, true, false], [true; 4]] {
+        assert_eq!(windows().with_cameras(kept.to_vec()).unwrap(), windows());
+    }
+    let masked = |kept: [bool; 4]| windows().with_cameras(kept.to_vec()).unwrap();
+    assert_eq!(masked([true, true, false, true]), masked([true, false, false, false]));
+    assert!(!masked([true, true, false, true]).keeps_all_cameras() && windows().keeps_all_cameras());
+    assert_eq!(masked([true, true, false, true]).intersection(&windows()), masked([true, false, false, false]));
+    assert!(!masked([true, true, false, true]).intersection(&masked([false, true, true, true])).keeps_any());
+}

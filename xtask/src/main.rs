@@ -2,8 +2,10 @@
 
 #![forbid(unsafe_code)]
 
+mod apt;
 mod steps;
 mod test;
+mod third_party;
 mod vulkan;
 
 use std::process::ExitCode;
@@ -12,8 +14,10 @@ const USAGE: &str = "\
 Usage: cargo xtask <TASK>
 
 Tasks:
-  test [--long]   run every check: formatting, clippy, docs, all tests on a Vulkan device, each crate alone;
-                  installs a software Vulkan driver if there is no adapter (Debian, Ubuntu; as root)
+  test [--long]   run every check: formatting, clippy, docs, all tests on a Vulkan device, each crate alone,
+                  other people's programs on our files;
+                  installs a software Vulkan driver if there is no adapter, Python and Node if they are missing
+                  (Debian, Ubuntu; as root)
                   --long: also the slow tests (LFSLAB_LONG=1) and each benchmark once
   help            print this
 ";

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use crate::steps::{CommandLine, Runner, workspace_root};
-use crate::vulkan;
+use crate::{third_party, vulkan};
 
 /// Runs every check in order and stops at the first that fails.
 pub(crate) fn run(long: bool) -> Result<(), String> {
     let crates = packages(&workspace_root())?;
     let (before, after) = (checks(), tests(&crates, long));
-    let mut runner = Runner::new(before.len() + 1 + after.len());
+    let mut runner = Runner::new(before.len() + 1 + after.len() + 1);
     for (name, line) in before {
         runner.step(&name, || line.run())?;
     }
@@ -18,6 +18,7 @@ pub(crate) fn run(long: bool) -> Result<(), String> {
         line.variables.extend(variables.iter().cloned());
         runner.step(&name, || line.run())?;
     }
+    runner.step("other people's readers", third_party::run)?;
     runner.summary();
     Ok(())
 }
@@ -43,12 +44,15 @@ fn tests(crates: &[String], long: bool) -> Vec<(String, CommandLine)> {
         }
         steps.push((format!("tests of {name}"), line));
     }
-    let no_std = CommandLine::new("cargo test -p lf-math --no-default-features --locked");
-    steps.push(("tests of lf-math without std".to_owned(), no_std));
-    let fuzz = "cargo check --manifest-path lf-compress/fuzz/Cargo.toml --target-dir target/fuzz --locked";
+    for name in ["lf-math", "lf-format"] {
+        let no_std = CommandLine::new(&format!("cargo test -p {name} --no-default-features --locked"));
+        steps.push((format!("tests of {name} without std"), no_std));
+    }
+    let fuzz = "cargo check -p lf-fuzz --features libfuzzer --locked";
     steps.push(("fuzz targets compile".to_owned(), CommandLine::new(fuzz)));
     if long {
-        let benches = "cargo bench -p lf-bench -p lf-compress -p lf-ibr -p lf-scene --benches --locked -- --test";
+        let benches =
+            "cargo bench -p lf-bench -p lf-compress -p lf-ibr -p lf-scene -p lf-tests --benches --locked -- --test";
         steps.push(("each benchmark once".to_owned(), CommandLine::new(benches)));
     }
     steps
@@ -74,8 +78,8 @@ mod tests {
         for name in ["lf-bench", "lf-cli", "lf-math", "lf-report", "lf-tests", "xtask"] {
             assert!(crates.iter().any(|found| found == name), "{crates:?}");
         }
-        assert_eq!(tests(&crates, false).len(), crates.len() + 2);
-        assert_eq!(tests(&crates, true).len(), crates.len() + 3);
+        assert_eq!(tests(&crates, false).len(), crates.len() + 3);
+        assert_eq!(tests(&crates, true).len(), crates.len() + 4);
     }
 
     #[test]

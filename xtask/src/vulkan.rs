@@ -2,13 +2,12 @@
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
+use crate::apt;
 use crate::steps::CommandLine;
 
 const ADAPTERS: &str = "cargo run -q -p lf-gpu --example adapters --locked";
-const INSTALL: [&str; 2] =
-    ["apt-get update", "apt-get install -y --no-install-recommends mesa-vulkan-drivers libvulkan1"];
 /// Which drivers the Vulkan loader uses, instead of all it finds.
 const DRIVER_FILES: &str = "VK_DRIVER_FILES";
 
@@ -26,7 +25,8 @@ pub(crate) fn prepare() -> Result<Vec<(&'static str, OsString)>, String> {
     let adapters = match find_adapters()? {
         Some(adapters) => adapters,
         None => {
-            install()?;
+            println!("no graphics adapter found: a software Vulkan driver will do");
+            apt::install("mesa-vulkan-drivers libvulkan1", HOW_TO_INSTALL)?;
             let still = "still no graphics adapter after mesa-vulkan-drivers was installed";
             find_adapters()?.ok_or_else(|| format!("{still}\nlook again: {ADAPTERS}"))?
         }
@@ -58,36 +58,6 @@ fn find_adapters() -> Result<Option<String>, String> {
     }
 }
 
-/// Installs Mesa's driver on Debian and its relatives; elsewhere, or without the right to, says what to install.
-fn install() -> Result<(), String> {
-    let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
-    if !is_debian_like(&release) || !is_root() {
-        return Err(HOW_TO_INSTALL.to_owned());
-    }
-    println!("no graphics adapter found; installing Mesa's software Vulkan driver");
-    for line in INSTALL {
-        let line = CommandLine::new(line).with("DEBIAN_FRONTEND", "noninteractive");
-        line.run().map_err(|error| format!("{error}\n{HOW_TO_INSTALL}"))?;
-    }
-    Ok(())
-}
-
-fn is_root() -> bool {
-    let id = Command::new("id").arg("-u").output();
-    id.is_ok_and(|output| output.status.success() && output.stdout.trim_ascii() == b"0")
-}
-
-/// Whether an os-release text names Debian, Ubuntu or something that says it is like one (os-release(5)).
-fn is_debian_like(os_release: &str) -> bool {
-    let value = |line: &str| {
-        let (name, value) = line.trim().split_once('=')?;
-        let value = value.trim_matches(['"', '\'']).to_owned();
-        matches!(name, "ID" | "ID_LIKE").then_some(value)
-    };
-    let values: Vec<String> = os_release.lines().filter_map(value).collect();
-    values.iter().flat_map(|value| value.split_whitespace()).any(|id| matches!(id, "debian" | "ubuntu"))
-}
-
 /// Whether the list of adapters has one that is not a program.
 fn has_hardware(adapters: &str) -> bool {
     ["DiscreteGpu", "IntegratedGpu", "VirtualGpu"].iter().any(|kind| adapters.contains(kind))
@@ -108,23 +78,6 @@ fn lavapipe_files(folders: &[&Path]) -> Vec<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn os_release() {
-        let cases = [
-            ("PRETTY_NAME=\"Debian GNU/Linux 12\"\nID=debian\n", true),
-            ("ID=ubuntu\nID_LIKE=debian\n", true),
-            ("ID=linuxmint\nID_LIKE=\"ubuntu debian\"\n", true),
-            ("ID='pop'\nID_LIKE='ubuntu debian'\n", true),
-            ("NAME=Fedora\nID=fedora\n", false),
-            ("ID=arch\nHOME_URL=\"https://debian.example\"\nVARIANT_ID=debian\n", false),
-            ("ID=nodebian\n", false),
-            ("", false),
-        ];
-        for (text, expected) in cases {
-            assert_eq!(is_debian_like(text), expected, "{text}");
-        }
-    }
 
     #[test]
     fn hardware_is_told_from_software() {

@@ -1,0 +1,140 @@
+"""`spec/lfslab.ksy`, compiled to Python, on the files in `spec/vectors`.
+
+It has to take every valid file and find in it what our Python reader finds, and to refuse every invalid one that breaks a rule
+which the language of Kaitai Struct can express.
+
+    python check_kaitai.py
+"""
+
+import importlib.util
+import json
+import subprocess
+import tempfile
+from collections import Counter
+from pathlib import Path
+from types import ModuleType
+
+from kaitaistruct import KaitaiStruct, ValidationFailedError
+
+import lfslab
+
+SPEC = Path(lfslab.__file__).parents[1]
+VECTORS = SPEC / "vectors"
+
+# The message ids of the rules that the description holds a file to, and files that it takes all the same: a checksum is wrong.
+EXPRESSED = set(
+    """
+    foreign header.magic header.version header.truncated header.file-length header.directory-offset header.entry-count
+    header.reserved
+    entry.tag entry.flags entry.critical entry.packing entry.subject entry.offset entry.stored-length entry.raw-length
+    entry.reserved entry.order file.padding file.tail
+    geom.cell geom.slab-count geom.face geom.face-order geom.encoding geom.transfer geom.plane geom.axis geom.focal-depth
+    geom.tiling geom.reserved geom.length
+    crop.length crop.window crop.nothing mask.length mask.bits mask.nothing slab.no-camera
+    tile.zstd tile.finite
+    meta.count meta.order meta.key meta.value
+    """.split()
+)
+EXCEPTIONS = {"zstd-checksum-wrong"}
+
+
+def compiled(folder: Path) -> ModuleType:
+    """The description as a Python module, which lies in the folder."""
+    script, description = Path(__file__).parent / "compile.js", SPEC / "lfslab.ksy"
+    subprocess.run(["node", str(script), str(description), "python", str(folder)], check=True)
+    spec = importlib.util.spec_from_file_location("lfslab_ksy", folder / "lfslab.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+# Kept until the end, so that the lines of an error can be shown.
+FOLDER = tempfile.TemporaryDirectory()
+DESCRIPTION = compiled(Path(FOLDER.name)).Lfslab
+
+
+def parse(file: bytes) -> KaitaiStruct:
+    """The file with all its instances fetched; an error if the description does not allow it."""
+    parsed = DESCRIPTION.from_bytes(file)
+    parsed._fetch_instances()
+    return parsed
+
+
+def evaluate(node: object, seen: set[int]) -> None:
+    """Asks for every value below a node, as a viewer of files does; fetching leaves out those that are computed."""
+    if isinstance(node, list):
+        for item in node:
+            evaluate(item, seen)
+    elif isinstance(node, KaitaiStruct) and id(node) not in seen:
+        seen.add(id(node))
+        computed = [name for name, member in vars(type(node)).items() if isinstance(member, property)]
+        for name in [*vars(node), *computed]:
+            if not name.startswith("_"):
+                evaluate(getattr(node, name), seen)
+
+
+def is_refused(file: bytes) -> bool:
+    """Whether the description does not allow the file. Any other error is one of the description's own."""
+    try:
+        parse(file)
+    except (ValidationFailedError, EOFError):
+        return True
+    return False
+
+
+def facts(parsed: KaitaiStruct) -> list:
+    """Slabs, tiles and metadata as the description finds them."""
+    slabs = parsed.geom.slabs
+    return [
+        [
+            (s.face, s.texel_encoding, s.plane, s.focal_depth, s.cameras_per_tile_s, s.cameras_per_tile_t, s.stored_cameras)
+            for s in slabs
+        ],
+        [(a.first, a.step, a.count) for s in slabs for a in (s.s, s.t, s.u, s.v)],
+        [(s.index, t.number, t.packing, t.raw_length, t.offset) for s in slabs for t in s.tiles],
+        {m.key.text: m.value.text for e in parsed.directory if e.tag.text == "META" for m in e.payload.entries},
+    ]
+
+
+def facts_of_reader(light_field: lfslab.LightField) -> list:
+    """The same as our Python reader finds them."""
+    slabs = light_field.slabs
+    return [
+        [(s.face, s.encoding, s.plane, s.focal_depth, s.tile_s, s.tile_t, s.stored.sum()) for s in slabs],
+        [tuple(a) for s in slabs for a in (s.s, s.t, s.u, s.v)],
+        [(slab, tile, e.packing, e.raw, e.offset) for (slab, tile), (e, _) in light_field.tiles.items()],
+        light_field.metadata,
+    ]
+
+
+def check_valid(path: Path) -> None:
+    file = path.read_bytes()
+    parsed = parse(file)
+    evaluate(parsed, set())
+    found, expected = facts(parsed), facts_of_reader(lfslab.LightField(file))
+    assert found == expected, f"{path.name}: {found}, not {expected}"
+
+
+def check_invalid(entries: list[dict]) -> None:
+    """Prints how many of the invalid files the description refuses, and which rules are beyond it."""
+    refused, taken = Counter(), Counter()
+    for entry in entries:
+        is_seen = is_refused((VECTORS / "invalid" / f"{entry['name']}.lfslab").read_bytes())
+        assert is_seen or entry["id"] not in EXPRESSED or entry["name"] in EXCEPTIONS, entry
+        (refused if is_seen else taken)[entry["id"]] += 1
+    assert refused.keys() >= EXPRESSED, f"no file breaks {EXPRESSED - refused.keys()}"
+    ids = f"{len(EXPRESSED)} of {len(refused | taken)} message ids"
+    print(f"{refused.total()} of {len(entries)} invalid files refused, among them those of {ids}")
+    print("taken:", ", ".join(f"{count} {rule}" for rule, count in sorted(taken.items())))
+
+
+def main() -> None:
+    index = json.loads((VECTORS / "index.json").read_text("utf-8"))
+    valid = [entry["name"] for entry in index if entry["valid"]]
+    for name in valid:
+        check_valid(VECTORS / "valid" / f"{name}.lfslab")
+    print(f"{len(valid)} valid files parsed")
+    check_invalid([entry for entry in index if not entry["valid"]])
+
+
+main()
