@@ -36,13 +36,13 @@ pub(crate) fn run_export(args: &ExportArgs) -> Result<()> {
 /// The volume texture of whole images: others cannot know of windows.
 fn export_volume(args: &ExportArgs, field: &PackedLightField) -> Result<()> {
     check_writable(&args.out)?;
-    let whole = field.whole()?;
+    let whole = field.whole(MAX_DECODED_BYTES)?;
     let format = match whole.tilings()[0].encoding() {
         TexelEncoding::Bc1 => VolumeFormat::Bc1,
         TexelEncoding::Rgba8 => VolumeFormat::Rgba8,
         _ => VolumeFormat::Rgba16Float,
     };
-    let slices = whole.volume_slices()?;
+    let slices = whole.volume_slices(MAX_DECODED_BYTES)?;
     let volume = Volume::new(whole.layout().size(), format, slices.iter().map(Vec::as_slice).collect())?;
     let bytes = match args.to {
         ExportFormat::Ktx2 => ktx2::encode(&volume, Supercompression::Zstd(KTX2_LEVEL))?,

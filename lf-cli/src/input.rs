@@ -1,7 +1,6 @@
 //! Files to read.
 
 use std::fs::File;
-use std::io::BufReader;
 
 use anyhow::{Context, Result};
 use lf_compress::PackedLightField;
@@ -10,13 +9,13 @@ use lf_format::{FileReader, Limits};
 use crate::args::FileArgs;
 
 /// An open file whose structure is sound.
-pub(crate) type Input = FileReader<BufReader<File>>;
+pub(crate) type Input = FileReader<File>;
 
 /// Opens a file and validates its structure.
 pub(crate) fn open(args: &FileArgs) -> Result<Input> {
     let file = File::open(&args.file).with_context(|| format!("cannot read {}", args.file.display()))?;
     let limits = Limits { memory_bytes: args.max_memory.saturating_mul(1 << 20) };
-    FileReader::open(BufReader::new(file), &limits).with_context(|| args.file.display().to_string())
+    FileReader::open(file, &limits).with_context(|| args.file.display().to_string())
 }
 
 /// Reads and unpacks a light field.

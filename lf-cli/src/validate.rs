@@ -1,7 +1,6 @@
 //! `lfslab validate`: everything that is wrong with a file.
 
 use std::fs::File;
-use std::io::BufReader;
 
 use anyhow::{Context, Result, bail};
 use lf_compress::{Finding, Severity, validate};
@@ -17,7 +16,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<()> {
     let limits = Limits { memory_bytes: args.input.max_memory.saturating_mul(1 << 20) };
     let file = File::open(&args.input.file).with_context(context)?;
     let mut findings = Vec::new();
-    let structure = validate(BufReader::new(file), &limits, |found| findings.push(found)).with_context(context)?;
+    let structure = validate(file, &limits, |found| findings.push(found)).with_context(context)?;
     let valid = findings.iter().all(|found| found.severity != Severity::Error);
     match args.format {
         Format::Json => print(&format!("{:#}", to_json(&path.to_string(), valid, structure.as_ref(), &findings)))?,

@@ -1,9 +1,8 @@
 //! The rules of the file format for what is inside tiles.
 
-use std::ops::Range;
-
 use half::f16;
 use lf_format::{Packing, Rule, SlabTiling, StoredTile, TexelEncoding};
+use lf_math::Windows;
 
 use crate::error::PackError;
 use crate::file::unpack_into;
@@ -78,9 +77,7 @@ fn rows<'a>(
     [s, t]: [u32; 2],
 ) -> impl Iterator<Item = &'a [u8]> + use<'a> {
     let (unit, width) = (Unit::of(tiling.encoding()), tiling.tile_size(tile)[0]);
-    let extent = |windows: &[Range<u32>], i: u32| {
-        windows.get(i as usize).map_or(0, |window| (window.len() as u32).next_multiple_of(4))
-    };
+    let extent = |windows: &Windows, i: u32| windows.get(i).map_or(0, |w| (w.end - w.start).next_multiple_of(4));
     let [across, down] = [extent(tiling.coverage().columns(), s), extent(tiling.coverage().rows(), t)];
     let (x, y) = (tiling.column_place(s), tiling.row_place(t));
     (y..y + down).step_by(unit.texels as usize).filter_map(move |y| {

@@ -92,7 +92,7 @@ impl PackedLightField {
         for (slab, texels) in slabs.iter().zip(texels) {
             texels.check(slab)?;
             let coverage = texels.coverage().clone();
-            tilings.push(SlabTiling::covering(slab, encoding, cameras_per_tile(slab, &coverage), coverage)?);
+            tilings.push(SlabTiling::covering(slab, encoding, cameras_per_tile(&coverage), coverage)?);
         }
         let encode_slab = |(tiling, texels): (&SlabTiling, &SlabTexels<T>)| {
             let stored: Vec<u32> = tiling.stored_tiles().collect();
@@ -130,8 +130,13 @@ impl PackedLightField {
     }
 
     fn decode_slabs<T: Texel>(&self, max_bytes: u64, decode: Decode<T>) -> Result<Vec<SlabTexels<T>>, PackError> {
-        let texels = self.tilings.iter().map(|tiling| tiling.coverage().texels()).fold(0, u64::saturating_add);
-        let bytes = texels.saturating_mul(size_of::<T>() as u64);
+        let slab_bytes = |tiling: &SlabTiling| {
+            let [across, down] = tiling.cameras().map(u64::from);
+            // Where cameras are left out, the place of each is kept.
+            let places = if tiling.coverage().keeps_all_cameras() { 0 } else { 8 * across * down };
+            tiling.coverage().texels().saturating_mul(size_of::<T>() as u64).saturating_add(places)
+        };
+        let bytes = self.tilings.iter().map(slab_bytes).fold(0, u64::saturating_add);
         if bytes > max_bytes {
             return Err(PackError::TooLarge { bytes, limit: max_bytes });
         }

@@ -59,7 +59,7 @@ fn padded_row<T: Texel>(image: &ImageWindow<'_, T>, u: Range<u32>, v: u32) -> im
 pub(crate) fn append_row<T: Texel>(out: &mut Vec<T>, tiling: &SlabTiling, row: u32, pictures: &[(u32, Image<T>)]) {
     let [across, _] = tiling.tiles();
     let [_, rows] = tiling.cameras_of(row * across);
-    for camera in rows.flat_map(|t| (0..tiling.cameras()[0]).map(move |s| [s, t])) {
+    for camera in tiling.coverage().windowed(0..tiling.cameras()[0], rows) {
         let Some(CameraPlace { tile, corner, window: [u, v] }) = tiling.place(camera) else { continue };
         let Ok(found) = pictures.binary_search_by_key(&tile, |(tile, _)| *tile) else { continue };
         let picture = &pictures[found].1;
@@ -69,10 +69,10 @@ pub(crate) fn append_row<T: Texel>(out: &mut Vec<T>, tiling: &SlabTiling, row: u
     }
 }
 
-/// All cameras of a tile, stored or not.
+/// The cameras of a tile that have room in its picture, stored or not.
 pub(crate) fn cameras_of(tiling: &SlabTiling, tile: u32) -> impl Iterator<Item = [u32; 2]> {
     let [columns, rows] = tiling.cameras_of(tile);
-    rows.flat_map(move |t| columns.clone().map(move |s| [s, t]))
+    tiling.coverage().windowed(columns, rows)
 }
 
 /// What a raw tile is made of: blocks of 4×4 texels, or single texels.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use lf_format::{CameraPlace, SlabTiling};
-use lf_math::Coverage;
+use lf_math::{Coverage, Slab};
 use rayon::prelude::*;
 
 use crate::error::PackError;
@@ -28,19 +28,29 @@ impl PackedLightField {
         self.recut(needed.collect())
     }
 
-    /// The same light field with whole images of all cameras. What is not stored is zero: black.
+    /// The same light field with whole images of all cameras, in at most `max_bytes`. What is not stored is zero: black.
     ///
     /// # Errors
-    /// If the volume would be too large.
-    pub fn whole(&self) -> Result<Self, PackError> {
-        self.recut(self.geometry().slabs().iter().map(Coverage::whole).collect())
+    /// If it would take more, or the volume would be too large.
+    pub fn whole(&self, max_bytes: u64) -> Result<Self, PackError> {
+        let (slabs, tilings) = (self.geometry().slabs(), self.tilings());
+        let slab_bytes = |(slab, tiling): (&Slab, &SlabTiling)| {
+            let padded = slab.resolution().map(|texels| u64::from(texels).next_multiple_of(4) / 4);
+            let counts = slab.cameras().map(u64::from).into_iter().chain(padded);
+            counts.fold(tiling.encoding().block_len(), u64::saturating_mul)
+        };
+        let bytes = slabs.iter().zip(tilings).map(slab_bytes).fold(0, u64::saturating_add);
+        if bytes > max_bytes {
+            return Err(PackError::TooLarge { bytes, limit: max_bytes });
+        }
+        self.recut(slabs.iter().map(Coverage::whole).collect())
     }
 
     /// Cuts each slab to a coverage, rounded out to blocks.
     fn recut(&self, coverages: Vec<Coverage>) -> Result<Self, PackError> {
         let mut tilings = Vec::new();
         for ((slab, tiling), coverage) in self.geometry().slabs().iter().zip(self.tilings()).zip(coverages) {
-            let per_tile = cameras_per_tile(slab, &coverage);
+            let per_tile = cameras_per_tile(&coverage);
             tilings.push(SlabTiling::covering(slab, tiling.encoding(), per_tile, coverage)?);
         }
         let cut_slab = |(slab, tiling): (usize, &SlabTiling)| {

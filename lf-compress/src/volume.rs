@@ -8,7 +8,7 @@
 //! BC1. Cropped slabs would lose to rounding what they gain, and slabs follow each other without gaps.
 
 use lf_format::{CameraPlace, SlabTiling, TexelEncoding};
-use lf_math::{Coverage, Slab};
+use lf_math::{Coverage, Windows};
 use thiserror::Error;
 
 use crate::picture::Unit;
@@ -54,22 +54,15 @@ pub struct Sample {
     pub texel: [u32; 2],
 }
 
-/// How many cameras of a slab share a tile along s and t.
+/// How many cameras of a slab, of which `coverage` is kept, share a tile along s and t.
 ///
 /// Of whole images the largest power of two that fits in 1024 texels, at least one, and not more than there are. Of
 /// windows as many as waste least where the tiles of a row differ in width, within 2048 texels.
 #[must_use]
-pub fn cameras_per_tile(slab: &Slab, coverage: &Coverage) -> [u32; 2] {
+pub fn cameras_per_tile(coverage: &Coverage) -> [u32; 2] {
     let coverage = coverage.clone().aligned(4);
-    let windows = [coverage.columns(), coverage.rows()];
-    [0, 1].map(|i| {
-        let (count, texels) = (slab.cameras()[i], slab.resolution()[i]);
-        let widths: Vec<u32> = windows[i].iter().map(|w| w.len() as u32).collect();
-        if widths.iter().all(|&width| width == texels) {
-            whole_per_tile(count, texels)
-        } else {
-            cropped_per_tile(&widths)
-        }
+    [coverage.columns(), coverage.rows()].map(|windows| {
+        if windows.is_whole() { whole_per_tile(windows.cameras(), windows.texels()) } else { cropped_per_tile(windows) }
     })
 }
 
@@ -80,10 +73,10 @@ fn whole_per_tile(cameras: u32, texels: u32) -> u32 {
 }
 
 /// The number with which tiles as wide as the widest cover least; of equal ones the smallest.
-fn cropped_per_tile(widths: &[u32]) -> u32 {
+fn cropped_per_tile(windows: &Windows) -> u32 {
+    let widths: Vec<u32> = windows.iter().map(|window| (window.end - window.start).next_multiple_of(4)).collect();
     let cost = |per_tile: usize| {
-        let tiles =
-            widths.chunks(per_tile).map(|tile| tile.iter().map(|&w| u64::from(w.next_multiple_of(4))).sum::<u64>());
+        let tiles = widths.chunks(per_tile).map(|tile| tile.iter().map(|&w| u64::from(w)).sum::<u64>());
         let widest = tiles.max().unwrap_or(0);
         (per_tile > 1 && widest > u64::from(CROPPED_EDGE), widest * widths.len().div_ceil(per_tile) as u64)
     };
@@ -159,16 +152,25 @@ impl VolumeLayout {
 
 impl PackedLightField {
     /// The slices of the volume as a graphics API takes them, each whole: rows of BC1 blocks, of RGBA8 texels, or of RGBA half
-    /// floats for half-float texels. What no tile covers is zero. All slabs must have the same encoding.
+    /// floats for half-float texels. What no tile covers is zero. All slabs must have the same encoding, and the slices take at
+    /// most `max_bytes`.
     ///
     /// # Errors
-    /// [`PackError::Encoding`] if a slab has another than the first.
-    pub fn volume_slices(&self) -> Result<Vec<Vec<u8>>, PackError> {
+    /// [`PackError::Encoding`] if a slab has another than the first, [`PackError::TooLarge`] if more would be needed.
+    pub fn volume_slices(&self, max_bytes: u64) -> Result<Vec<Vec<u8>>, PackError> {
         let encoding = self.tilings()[0].encoding();
         if let Some(other) = self.tilings().iter().find(|tiling| tiling.encoding() != encoding) {
             return Err(PackError::Encoding(other.encoding()));
         }
         let ([width, height, depth], unit) = (self.layout().size(), Unit::of(encoding));
+        let blocks =
+            [width, height].map(|texels| u64::from(texels / 4)).iter().product::<u64>().saturating_mul(depth.into());
+        // Half floats get a fourth channel.
+        let block_len = if encoding == TexelEncoding::Rgb16F { 128 } else { encoding.block_len() };
+        let bytes = blocks.saturating_mul(block_len);
+        if bytes > max_bytes {
+            return Err(PackError::TooLarge { bytes, limit: max_bytes });
+        }
         let rows = (height / unit.texels) as usize;
         let mut slices = vec![vec![0; unit.row_bytes(width) * rows]; depth as usize];
         for (slab, layout) in self.layout().slabs().iter().enumerate() {

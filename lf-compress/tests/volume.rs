@@ -36,7 +36,7 @@ fn layout_of(
 ) -> Result<VolumeLayout, VolumeTooLarge> {
     let tiling = |slab: &Slab| {
         let coverage = coverage(slab);
-        SlabTiling::covering(slab, TexelEncoding::Bc1, cameras_per_tile(slab, &coverage), coverage).expect("a tiling")
+        SlabTiling::covering(slab, TexelEncoding::Bc1, cameras_per_tile(&coverage), coverage).expect("a tiling")
     };
     VolumeLayout::new(&geometry.slabs().iter().map(tiling).collect::<Vec<_>>())
 }

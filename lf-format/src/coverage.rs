@@ -59,7 +59,7 @@ fn parse_window(cursor: &mut Cursor<'_>, texels: u32) -> Result<Range<u32>, Form
 
 /// Reads the payload of a `MASK` chunk, which begins at `offset` in the file and has the right length.
 pub(crate) fn parse_mask(payload: &[u8], offset: u64, coverage: Coverage) -> Result<Coverage, FormatError> {
-    let mut kept = Vec::with_capacity(coverage.columns().len().saturating_mul(coverage.rows().len()));
+    let mut kept = Vec::with_capacity(payload.len().saturating_mul(8));
     let bit = |i: usize| payload.get(i / 8).is_some_and(|byte| byte >> (i % 8) & 1 == 1);
     let mut left_out = false;
     for (i, camera) in coverage.cameras().enumerate() {
@@ -89,17 +89,15 @@ fn stray_bit(offset: u64, i: usize) -> FormatError {
 
 /// The payload of the `CROP` chunk; `None` if all windows are whole.
 pub(crate) fn crop_bytes(coverage: &Coverage) -> Option<Vec<u8>> {
-    let [u, v] = coverage.resolution();
-    let part = |windows: &[Range<u32>], texels: u32| windows.iter().any(|window| *window != (0..texels));
-    if !part(coverage.columns(), u) && !part(coverage.rows(), v) {
+    if coverage.columns().is_whole() && coverage.rows().is_whole() {
         return None;
     }
-    let record = |window: &Range<u32>| {
+    let record = |window: Range<u32>| {
         let (first, end) = (window.start / BLOCK, window.end.div_ceil(BLOCK));
         let number = if window.start < window.end { end - first } else { 0 };
         [if number > 0 { first } else { 0 }, number]
     };
-    let records = coverage.columns().iter().chain(coverage.rows()).flat_map(record);
+    let records = coverage.columns().iter().chain(coverage.rows().iter()).flat_map(record);
     Some(records.flat_map(u32::to_le_bytes).collect())
 }
 

@@ -9,8 +9,8 @@ use crate::container::no_tile;
 use crate::structure::Source;
 use crate::{ExtraChunk, FormatError, Limits, StoredTile, Structure};
 
-/// What is read at once at the start: enough for header, directory, geometry and metadata of most files.
-const HEAD_LEN: u64 = 16 << 10;
+/// What is read at once at the start: enough for header, directory and geometry of most files.
+const HEAD_LEN: u64 = 4 << 10;
 
 /// A file that is read where it is, with memory for its [`Structure`] and one tile at a time.
 #[derive(Debug)]
@@ -107,8 +107,9 @@ struct Seeking<'a, R> {
 impl<'a, R: Read + Seek> Seeking<'a, R> {
     fn new(input: &'a mut R) -> Result<Self, FormatError> {
         let len = input.seek(SeekFrom::End(0)).map_err(|source| FormatError::io("find the end of the file", source))?;
-        let mut head = Vec::new();
-        read_at(input, 0, len.min(HEAD_LEN), &mut head)?;
+        let mut head = vec![0; len.min(HEAD_LEN) as usize];
+        let read = input.seek(SeekFrom::Start(0)).and_then(|_| input.read_exact(&mut head));
+        read.map_err(|source| FormatError::io("read the file", source))?;
         Ok(Self { input, len, head, buffer: Vec::new() })
     }
 }

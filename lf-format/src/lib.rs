@@ -55,6 +55,6 @@ pub use tiling::{CameraPlace, SlabTiling};
 #[cfg(feature = "std")]
 pub use writer::{Contents, ExtraChunk, Writer};
 
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "std"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

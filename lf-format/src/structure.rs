@@ -216,7 +216,7 @@ impl<S: Source> Payloads<'_, S> {
                 return Err(FormatError::malformed(at, Rule::NoCamera, what));
             }
             let tiling = SlabTiling::checked(stored.encoding, stored.cameras_per_tile, coverage);
-            let raw = tiling.as_ref().and_then(|tiling| raw_len(tiling)?.checked_add(total));
+            let raw = tiling.as_ref().and_then(|tiling| tiling.total_raw_len()?.checked_add(total));
             let (Some(tiling), Some(raw)) = (tiling, raw) else {
                 let what = format!("slab {slab} or its tiles are too large");
                 return Err(FormatError::malformed(at, Rule::Tiling, what));
@@ -238,13 +238,12 @@ impl<S: Source> Payloads<'_, S> {
         // They stand before all tiles.
         let before_tiles = chunks.iter().take_while(|entry| entry.tag.rank() < Tag::TILE.rank());
         let find = |tag| before_tiles.clone().position(|entry| entry.tag == tag && entry.slab as usize == slab);
-        // Windows as ranges, and their places in the tiles.
-        self.budget.take("the windows of a slab", 3 * coverage::crop_len(shape))?;
         let mut found = Coverage::whole(shape);
         if let Some(index) = find(Tag::CROP) {
             let entry = &chunks[index];
             check_len(entry, coverage::crop_len(shape), Rule::CropLength)?;
-            let payload = self.payload(index, entry, "the windows of a slab", entry.stored_len)?;
+            // The payload, windows as ranges, and their places in the tiles.
+            let payload = self.payload(index, entry, "the windows of a slab", 4 * entry.stored_len)?;
             found = coverage::parse_crop(&payload, entry.offset, shape)?;
         }
         if let Some(index) = find(Tag::MASK) {
@@ -276,15 +275,6 @@ fn check_slabs(chunks: &[ChunkEntry], slabs: usize) -> Result<(), FormatError> {
             Err(FormatError::malformed(entry_offset(index).saturating_add(8), Rule::Subject, what))
         }
     }
-}
-
-/// Raw bytes of all tiles of a slab, those that are not stored among them; `None` for 2⁶⁴ and more.
-fn raw_len(tiling: &SlabTiling) -> Option<u64> {
-    let [across, down] = tiling.tiles();
-    let sum = |n: u32, size: &dyn Fn(u32) -> u32| (0..n).map(|i| u64::from(size(i) / 4)).sum::<u64>();
-    let width = sum(across, &|i| tiling.tile_size(i)[0]);
-    let height = sum(down, &|j| tiling.tile_size(j * across)[1]);
-    width.checked_mul(height)?.checked_mul(tiling.encoding().block_len())
 }
 
 /// Makes sure that every tile of every slab is there, in order, and as long as the geometry says; returns where each slab's

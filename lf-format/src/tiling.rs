@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use lf_math::{Coverage, Slab};
+use lf_math::{Coverage, Slab, Windows};
 
 use crate::geometry::check_cameras_per_tile;
 use crate::{FormatError, TexelEncoding};
@@ -22,18 +22,20 @@ pub struct SlabTiling {
     encoding: TexelEncoding,
     cameras_per_tile: [u32; 2],
     coverage: Coverage,
-    /// Whether cameras are left out that have a window.
-    masked: bool,
     axes: [Axis; 2],
 }
 
 /// One axis of the cut: columns of cameras along s with windows along u, or rows along t with windows along v.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Axis {
-    /// Where the window of each camera begins in its tile's picture, texels.
-    places: Vec<u32>,
-    /// How many texels the picture of each tile has.
-    extents: Vec<u32>,
+enum Axis {
+    /// Whole images, padded to `pitch` texels.
+    Whole { cameras: u32, per_tile: u32, pitch: u32 },
+    Cropped {
+        /// Where the window of each camera begins in its tile's picture, texels.
+        places: Vec<u32>,
+        /// How many texels the picture of each tile has.
+        extents: Vec<u32>,
+    },
 }
 
 /// Where the window of one camera lies.
@@ -67,8 +69,8 @@ impl SlabTiling {
         cameras_per_tile: [u32; 2],
         coverage: Coverage,
     ) -> Result<Self, FormatError> {
-        let cameras = [coverage.columns().len(), coverage.rows().len()];
-        if cameras != slab.cameras().map(|n| n as usize) || coverage.resolution() != slab.resolution() {
+        let cameras = [coverage.columns().cameras(), coverage.rows().cameras()];
+        if cameras != slab.cameras() || coverage.resolution() != slab.resolution() {
             return Err(FormatError::argument("the coverage is that of another slab"));
         }
         check_cameras_per_tile(slab, cameras_per_tile).map_err(FormatError::argument)?;
@@ -82,12 +84,10 @@ impl SlabTiling {
     /// As [`Self::covering`] for numbers that are known to fit each other; `None` if a size does not fit its integer.
     pub(crate) fn checked(encoding: TexelEncoding, cameras_per_tile: [u32; 2], coverage: Coverage) -> Option<Self> {
         let coverage = coverage.aligned(BLOCK);
-        let axes =
-            [Axis::new(coverage.columns(), cameras_per_tile[0])?, Axis::new(coverage.rows(), cameras_per_tile[1])?];
-        let [across, down] = [0, 1].map(|i: usize| u32::try_from(axes[i].extents.len()).ok());
-        across?.checked_mul(down?)?;
-        let masked = !coverage.keeps_all_cameras();
-        Some(Self { encoding, cameras_per_tile, coverage, masked, axes })
+        let [per_s, per_t] = cameras_per_tile;
+        let axes = [Axis::new(coverage.columns(), per_s)?, Axis::new(coverage.rows(), per_t)?];
+        axes[0].tiles().checked_mul(axes[1].tiles())?;
+        Some(Self { encoding, cameras_per_tile, coverage, axes })
     }
 
     /// How texels are stored.
@@ -105,7 +105,7 @@ impl SlabTiling {
     /// Number of cameras of the slab along s and t.
     #[must_use]
     pub fn cameras(&self) -> [u32; 2] {
-        [0, 1].map(|i: usize| self.axes[i].places.len() as u32)
+        [self.coverage.columns().cameras(), self.coverage.rows().cameras()]
     }
 
     /// Texels of one whole camera image along u and v, without padding.
@@ -123,15 +123,16 @@ impl SlabTiling {
     /// Number of tiles along s and t, those that are not stored among them.
     #[must_use]
     pub fn tiles(&self) -> [u32; 2] {
-        [0, 1].map(|i: usize| self.axes[i].extents.len() as u32)
+        [self.axes[0].tiles(), self.axes[1].tiles()]
     }
 
     /// The numbers of the tiles that are stored, in ascending order.
     pub fn stored_tiles(&self) -> impl Iterator<Item = u32> {
-        let [across, _] = self.tiles();
-        let [columns, rows] = [0, 1].map(|i: usize| self.axes[i].filled());
-        let numbers = rows.into_iter().flat_map(move |j| columns.clone().into_iter().map(move |i| j * across + i));
-        numbers.filter(|&tile| self.stores(tile))
+        let ([across, _], columns, rows) = (self.tiles(), self.axes[0].filled(), self.axes[1].filled());
+        let count = columns.count() * rows.count();
+        let number = move |n: u32| Some(rows.get(n / columns.count())? * across + columns.get(n % columns.count())?);
+        let unmasked = self.coverage.keeps_all_cameras();
+        (0..count).filter_map(number).filter(move |&tile| unmasked || self.stores(tile))
     }
 
     /// Whether a tile is stored: at least one of its cameras is.
@@ -140,7 +141,7 @@ impl SlabTiling {
         let [columns, rows] = self.cameras_of(tile);
         // Without a mask no camera need be tried: windows can leave one of four billion.
         let any_camera = || rows.clone().any(|t| columns.clone().any(|s| self.coverage.window([s, t]).is_some()));
-        !self.tile_size(tile).contains(&0) && (!self.masked || any_camera())
+        !self.tile_size(tile).contains(&0) && (self.coverage.keeps_all_cameras() || any_camera())
     }
 
     /// The cameras of a tile along s and t; empty if there is no such tile.
@@ -161,10 +162,8 @@ impl SlabTiling {
     #[must_use]
     pub fn block_windows(&self, tile: u32) -> [Vec<Range<u32>>; 2] {
         let [columns, rows] = self.cameras_of(tile);
-        let blocks = |window: &Range<u32>| window.start / BLOCK..window.end.div_ceil(BLOCK);
-        let of = |windows: &[Range<u32>], cameras: Range<u32>| {
-            windows.get(cameras.start as usize..cameras.end as usize).unwrap_or_default().iter().map(blocks).collect()
-        };
+        let blocks = |window: Range<u32>| window.start / BLOCK..window.end.div_ceil(BLOCK);
+        let of = |windows: &Windows, cameras: Range<u32>| cameras.filter_map(|i| windows.get(i)).map(blocks).collect();
         [of(self.coverage.columns(), columns), of(self.coverage.rows(), rows)]
     }
 
@@ -172,8 +171,7 @@ impl SlabTiling {
     #[must_use]
     pub fn tile_size(&self, tile: u32) -> [u32; 2] {
         let [across, _] = self.tiles();
-        let extent = |axis: &Axis, i: u32| axis.extents.get(i as usize).copied().unwrap_or(0);
-        [extent(&self.axes[0], tile % across), extent(&self.axes[1], tile / across)]
+        [self.axes[0].extent(tile % across), self.axes[1].extent(tile / across)]
     }
 
     /// Length of one unpacked tile, bytes.
@@ -181,6 +179,12 @@ impl SlabTiling {
     pub fn raw_len(&self, tile: u32) -> u64 {
         let [width, height] = self.tile_size(tile).map(|texels| u64::from(texels / BLOCK));
         width.saturating_mul(height).saturating_mul(self.encoding.block_len())
+    }
+
+    /// Length of all tiles unpacked, those that are not stored among them, bytes; `None` for 2⁶⁴ and more.
+    pub(crate) fn total_raw_len(&self) -> Option<u64> {
+        let [across, down] = [self.axes[0].total() / u64::from(BLOCK), self.axes[1].total() / u64::from(BLOCK)];
+        across.checked_mul(down)?.checked_mul(self.encoding.block_len())
     }
 
     /// Where the window of a camera (s, t) is; `None` if the camera is not stored.
@@ -198,34 +202,103 @@ impl SlabTiling {
     /// column.
     #[must_use]
     pub fn column_place(&self, s: u32) -> u32 {
-        self.axes[0].places.get(s as usize).copied().unwrap_or(0)
+        self.axes[0].place(s)
     }
 
     /// Where the windows of a row of cameras begin in their tile's pictures: texels from the top. 0 if there is no such row.
     #[must_use]
     pub fn row_place(&self, t: u32) -> u32 {
-        self.axes[1].places.get(t as usize).copied().unwrap_or(0)
+        self.axes[1].place(t)
     }
 }
 
 impl Axis {
-    /// `None` if a tile would be too large.
-    fn new(windows: &[Range<u32>], per_tile: u32) -> Option<Self> {
-        let mut axis = Self { places: Vec::with_capacity(windows.len()), extents: Vec::new() };
-        for tile in windows.chunks(per_tile as usize) {
-            let mut end = 0u32;
-            for window in tile {
-                axis.places.push(end);
-                let blocks = window.end.div_ceil(BLOCK) - window.start / BLOCK;
-                end = end.checked_add(blocks.checked_mul(BLOCK)?)?;
-            }
-            axis.extents.push(end);
+    /// `None` if a tile would be too large. `per_tile` is at least 1 and at most the number of cameras.
+    fn new(windows: &Windows, per_tile: u32) -> Option<Self> {
+        if windows.is_whole() {
+            let pitch = windows.texels().checked_next_multiple_of(BLOCK)?;
+            pitch.checked_mul(per_tile)?;
+            return Some(Self::Whole { cameras: windows.cameras(), per_tile, pitch });
         }
-        Some(axis)
+        let (mut places, mut extents) = (Vec::new(), Vec::new());
+        let mut end = 0u32;
+        for (camera, window) in (0u32..).zip(windows.iter()) {
+            if camera % per_tile == 0 {
+                extents.push(0);
+                end = 0;
+            }
+            places.push(end);
+            let blocks = window.end.div_ceil(BLOCK) - window.start / BLOCK;
+            end = end.checked_add(blocks.checked_mul(BLOCK)?)?;
+            *extents.last_mut()? = end;
+        }
+        Some(Self::Cropped { places, extents })
+    }
+
+    /// Number of tiles, empty ones too.
+    fn tiles(&self) -> u32 {
+        match self {
+            Self::Whole { cameras, per_tile, .. } => cameras.div_ceil(*per_tile),
+            Self::Cropped { extents, .. } => extents.len() as u32,
+        }
+    }
+
+    /// Texels of a tile's picture; 0 if there is no such tile.
+    fn extent(&self, tile: u32) -> u32 {
+        match self {
+            Self::Whole { cameras, per_tile, pitch } => {
+                cameras.saturating_sub(tile.saturating_mul(*per_tile)).min(*per_tile) * pitch
+            }
+            Self::Cropped { extents, .. } => extents.get(tile as usize).copied().unwrap_or(0),
+        }
+    }
+
+    /// Texels of the pictures of all tiles.
+    fn total(&self) -> u64 {
+        match self {
+            Self::Whole { cameras, pitch, .. } => u64::from(*cameras) * u64::from(*pitch),
+            Self::Cropped { extents, .. } => extents.iter().map(|&extent| u64::from(extent)).sum(),
+        }
+    }
+
+    /// Where the window of a camera begins in its tile's picture; 0 if there is no such camera.
+    fn place(&self, camera: u32) -> u32 {
+        match self {
+            Self::Whole { cameras, per_tile, pitch } if camera < *cameras => camera % per_tile * pitch,
+            Self::Whole { .. } => 0,
+            Self::Cropped { places, .. } => places.get(camera as usize).copied().unwrap_or(0),
+        }
     }
 
     /// The columns or rows of tiles that are not empty.
-    fn filled(&self) -> Vec<u32> {
-        (0u32..).zip(&self.extents).filter(|&(_, &extent)| extent > 0).map(|(i, _)| i).collect()
+    fn filled(&self) -> Filled {
+        match self {
+            Self::Whole { .. } => Filled::All(self.tiles()),
+            Self::Cropped { extents, .. } => {
+                Filled::These((0u32..).zip(extents).filter(|&(_, &extent)| extent > 0).map(|(i, _)| i).collect())
+            }
+        }
+    }
+}
+
+/// Which columns or rows of tiles are not empty.
+enum Filled {
+    All(u32),
+    These(Vec<u32>),
+}
+
+impl Filled {
+    fn count(&self) -> u32 {
+        match self {
+            Self::All(count) => *count,
+            Self::These(list) => list.len() as u32,
+        }
+    }
+
+    fn get(&self, n: u32) -> Option<u32> {
+        match self {
+            Self::All(count) => (n < *count).then_some(n),
+            Self::These(list) => list.get(n as usize).copied(),
+        }
     }
 }

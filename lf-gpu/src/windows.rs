@@ -70,7 +70,7 @@ impl WindowTable {
 fn camera_row(slab: &SlabLayout, axis: usize, camera: u32) -> [i32; 4] {
     let tiling = slab.tiling();
     let windows = [tiling.coverage().columns(), tiling.coverage().rows()][axis];
-    let window = &windows[camera as usize];
+    let window = windows.get(camera).unwrap_or(0..0);
     let place = if axis == 0 { tiling.column_place(camera) } else { tiling.row_place(camera) };
     let rank = slab.rank(axis, camera / tiling.cameras_per_tile()[axis]);
     match rank.filter(|_| !window.is_empty()) {

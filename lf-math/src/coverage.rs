@@ -13,15 +13,14 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use crate::error::GeometryError;
-use crate::{Cell, SampledAxis, Slab};
+use crate::{Cell, SampledAxis, Slab, Windows};
 
 /// The texels that are kept of a slab: a window of each image, the same along u for all cameras of a column and along v for
 /// all cameras of a row, and which cameras there are at all.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Coverage {
-    resolution: [u32; 2],
-    columns: Vec<Range<u32>>,
-    rows: Vec<Range<u32>>,
+    columns: Windows,
+    rows: Windows,
     /// By camera, t·columns + s. Empty if none is left out.
     kept: Vec<bool>,
 }
@@ -34,8 +33,7 @@ impl Coverage {
     #[must_use]
     pub fn whole(slab: &Slab) -> Self {
         let ([s, t], [u, v]) = (slab.cameras(), slab.resolution());
-        let windows = |count: u32, texels: u32| (0..count).map(|_| 0..texels).collect();
-        Self { resolution: [u, v], columns: windows(s, u), rows: windows(t, v), kept: Vec::new() }
+        Self { columns: Windows::whole(s, u), rows: Windows::whole(t, v), kept: Vec::new() }
     }
 
     /// The texels that [`Slab::taps`] and bilinear interpolation use, with a weight greater than 0, for any ray whose
@@ -43,7 +41,7 @@ impl Coverage {
     #[must_use]
     pub fn of_cell(slab: &Slab, cell: &Cell) -> Self {
         let [columns, rows] = [0, 1].map(|i| Shadow::new(slab, cell, i).windows());
-        Self { resolution: slab.resolution(), columns, rows, kept: Vec::new() }
+        Self { columns, rows, kept: Vec::new() }
     }
 
     /// The texels in given windows, in texels: `columns` along u for each s, `rows` along v for each t.
@@ -61,8 +59,8 @@ impl Coverage {
                 return Err(GeometryError::Window { start: window.start, end: window.end, texels: resolution[i] });
             }
         }
-        let [columns, rows] = [columns, rows].map(|windows| windows.into_iter().map(plain).collect());
-        Ok(Self { resolution, columns, rows, kept: Vec::new() })
+        let (columns, rows) = (Windows::new(columns, resolution[0]), Windows::new(rows, resolution[1]));
+        Ok(Self { columns, rows, kept: Vec::new() })
     }
 
     /// The same without the cameras for which `kept`, by t·columns + s, is false.
@@ -70,7 +68,7 @@ impl Coverage {
     /// # Errors
     /// There must be one value for each camera.
     pub fn with_cameras(self, kept: Vec<bool>) -> Result<Self, GeometryError> {
-        let (len, expected) = (kept.len(), self.columns.len() * self.rows.len());
+        let (len, expected) = (kept.len(), self.camera_count());
         if len != expected {
             return Err(GeometryError::Length { what: "camera mask", len, expected });
         }
@@ -80,94 +78,99 @@ impl Coverage {
     /// What is kept by this and by another coverage of the same slab. Columns and rows that one of them lacks are empty.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
-        let both = |a: &[Range<u32>], b: &[Range<u32>]| {
-            let common = |(a, b): (&Range<u32>, &Range<u32>)| a.start.max(b.start)..a.end.min(b.end);
-            a.iter().zip(b).map(common).map(plain).collect()
-        };
         let keeps = |coverage: &Self, camera: usize| coverage.kept.get(camera).is_none_or(|&kept| kept);
-        let masked =
-            if self.kept.is_empty() && other.kept.is_empty() { 0 } else { self.columns.len() * self.rows.len() };
+        let masked = if self.kept.is_empty() && other.kept.is_empty() { 0 } else { self.camera_count() };
         Self {
-            resolution: self.resolution,
-            columns: both(&self.columns, &other.columns),
-            rows: both(&self.rows, &other.rows),
+            columns: self.columns.intersection(&other.columns),
+            rows: self.rows.intersection(&other.rows),
             kept: (0..masked).map(|camera| keeps(self, camera) && keeps(other, camera)).collect(),
         }
         .canonical()
     }
 
     /// One way to say which cameras are kept: those with empty windows are not, and no list if all others are.
-    fn canonical(mut self) -> Self {
-        let width = self.columns.len();
-        let windowed = |i: usize| !self.columns[i % width].is_empty() && !self.rows[i / width].is_empty();
-        for (i, kept) in self.kept.iter_mut().enumerate() {
-            *kept &= windowed(i);
-        }
-        if self.kept.iter().enumerate().all(|(i, &kept)| kept == windowed(i)) {
-            self.kept = Vec::new();
-        }
-        self
+    fn canonical(self) -> Self {
+        let windowed =
+            |[s, t]: [u32; 2]| [self.columns.get(s), self.rows.get(t)].iter().flatten().all(|w| !w.is_empty());
+        let whole = self.cameras().zip(&self.kept).all(|(camera, &kept)| kept || !windowed(camera));
+        let kept = self.cameras().zip(&self.kept).map(|(camera, &kept)| kept && windowed(camera));
+        let kept = if whole { Vec::new() } else { kept.collect() };
+        Self { kept, ..self }
     }
 
     /// The same with windows rounded out to multiples of `block` texels, as far as the images reach.
     #[must_use]
-    pub fn aligned(mut self, block: u32) -> Self {
-        for (windows, texels) in [&mut self.columns, &mut self.rows].into_iter().zip(self.resolution) {
-            for window in windows.iter_mut().filter(|window| window.start < window.end) {
-                let end = window.end.checked_next_multiple_of(block).unwrap_or(texels);
-                *window = window.start / block * block..end.min(texels);
-            }
-        }
-        self
+    pub fn aligned(self, block: u32) -> Self {
+        Self { columns: self.columns.aligned(block), rows: self.rows.aligned(block), kept: self.kept }
     }
 
-    /// The window along u of each column of cameras, texels.
+    /// The window along u of each column of cameras.
     #[must_use]
-    pub fn columns(&self) -> &[Range<u32>] {
+    pub fn columns(&self) -> &Windows {
         &self.columns
     }
 
-    /// The window along v of each row of cameras, texels.
+    /// The window along v of each row of cameras.
     #[must_use]
-    pub fn rows(&self) -> &[Range<u32>] {
+    pub fn rows(&self) -> &Windows {
         &self.rows
     }
 
     /// Texels of a whole image along u and v.
     #[must_use]
     pub fn resolution(&self) -> [u32; 2] {
-        self.resolution
+        [self.columns.texels(), self.rows.texels()]
+    }
+
+    fn camera_count(&self) -> usize {
+        (self.columns.cameras() as usize).saturating_mul(self.rows.cameras() as usize)
     }
 
     /// The windows of a camera (s, t) along u and v; `None` if there is no such camera or nothing of it is kept.
     #[must_use]
+    #[inline]
     pub fn window(&self, [s, t]: [u32; 2]) -> Option<[Range<u32>; 2]> {
-        let (s, t) = (s as usize, t as usize);
         let (u, v) = (self.columns.get(s)?, self.rows.get(t)?);
-        let kept = self.kept.get(t * self.columns.len() + s).is_none_or(|&kept| kept);
-        (kept && !u.is_empty() && !v.is_empty()).then(|| [u.clone(), v.clone()])
+        let place = t as usize * self.columns.cameras() as usize + s as usize;
+        let kept = self.kept.get(place).is_none_or(|&kept| kept);
+        (kept && !u.is_empty() && !v.is_empty()).then_some([u, v])
     }
 
     /// Whether all of every image is kept.
     #[must_use]
     pub fn is_whole(&self) -> bool {
-        let whole = |windows: &[Range<u32>], texels| windows.iter().all(|window| *window == (0..texels));
-        self.kept.is_empty() && whole(&self.columns, self.resolution[0]) && whole(&self.rows, self.resolution[1])
+        self.kept.is_empty() && self.columns.is_whole() && self.rows.is_whole()
     }
 
     /// All cameras of the slab, kept or not: s fastest, then t.
     pub fn cameras(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
-        let (across, down) = (self.columns.len() as u32, self.rows.len() as u32);
+        let (across, down) = (self.columns.cameras(), self.rows.cameras());
         (0..down).flat_map(move |t| (0..across).map(move |s| [s, t]))
+    }
+
+    /// The cameras in a range of columns and a range of rows whose windows are not empty, kept or not: s fastest, then t. Takes no
+    /// time for those with empty windows but what it takes to look at each column and each row once.
+    pub fn windowed(&self, s: Range<u32>, t: Range<u32>) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let filled = |windows: &Windows, range: Range<u32>| -> Vec<u32> {
+            range.filter(|&camera| windows.get(camera).is_some_and(|window| !window.is_empty())).collect()
+        };
+        let (columns, rows) = (filled(&self.columns, s), filled(&self.rows, t));
+        let count = columns.len() * rows.len();
+        (0..count).map(move |n| [columns[n % columns.len()], rows[n / columns.len()]])
+    }
+
+    /// The cameras that are kept: s fastest, then t.
+    pub fn stored(&self) -> impl Iterator<Item = ([u32; 2], [Range<u32>; 2])> {
+        let windowed = self.windowed(0..self.columns.cameras(), 0..self.rows.cameras());
+        windowed.filter_map(|camera| Some((camera, self.window(camera)?)))
     }
 
     /// Whether anything is kept.
     #[must_use]
     pub fn keeps_any(&self) -> bool {
-        let filled = |windows: &[Range<u32>]| windows.iter().any(|window| window.start < window.end);
-        // Without a mask no camera need be tried.
+        // Without a list no camera need be tried.
         let any_camera = || self.cameras().any(|camera| self.window(camera).is_some());
-        filled(&self.columns) && filled(&self.rows) && (self.kept.is_empty() || any_camera())
+        self.columns.any() && self.rows.any() && (self.kept.is_empty() || any_camera())
     }
 
     /// Whether every camera whose windows are not empty is kept.
@@ -179,14 +182,11 @@ impl Coverage {
     /// How many texels are kept.
     #[must_use]
     pub fn texels(&self) -> u64 {
-        let area = |[u, v]: [Range<u32>; 2]| u.len() as u64 * v.len() as u64;
-        self.cameras().filter_map(|camera| self.window(camera)).map(area).sum()
+        if self.kept.is_empty() {
+            return self.columns.total().saturating_mul(self.rows.total());
+        }
+        self.stored().map(|(_, [u, v])| u.len() as u64 * v.len() as u64).sum()
     }
-}
-
-/// One way to say that a window is empty.
-fn plain(window: Range<u32>) -> Range<u32> {
-    if window.is_empty() { 0..0 } else { window }
 }
 
 /// One axis of the problem: what the cell's points see of the cameras along s (or t) and their slopes u (or v).
@@ -226,8 +226,8 @@ impl Shadow {
         }
     }
 
-    fn windows(&self) -> Vec<Range<u32>> {
-        (0..self.cameras.count()).map(|i| self.window(i)).collect()
+    fn windows(&self) -> Windows {
+        Windows::new((0..self.cameras.count()).map(|i| self.window(i)), self.slopes.count())
     }
 
     /// The texels of camera `i` that rays use. It serves the rays that cross the plane less than one camera away, and the

@@ -32,6 +32,7 @@ mod pinhole;
 mod ray;
 mod slab;
 mod texels;
+mod windows;
 
 pub use axis::SampledAxis;
 pub use cell::Cell;
@@ -48,6 +49,7 @@ pub use pinhole::{Pinhole, near_plane};
 pub use ray::{Ray, normalized, reflect};
 pub use slab::{CameraTap, Slab, SlabCoord};
 pub use texels::{ImageWindow, SlabTexels};
+pub use windows::Windows;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -4,16 +4,25 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use crate::error::GeometryError;
-use crate::{Coverage, Slab};
+use crate::{Coverage, Slab, Windows};
 
 /// The texels of a slab, camera after camera (s fastest, then t), of each image the window that its [`Coverage`] keeps, row
 /// after row. Texels are by default 8-bit RGBA, sRGB-encoded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlabTexels<T = [u8; 4]> {
     coverage: Coverage,
-    /// Where each camera's image begins, t·columns + s.
-    starts: Vec<usize>,
+    starts: Starts,
     texels: Vec<T>,
+}
+
+/// Where each camera's image begins.
+#[derive(Debug, Clone, PartialEq)]
+enum Starts {
+    /// All cameras with windows are there: a row of cameras takes the width of all windows times its height. Texels in the
+    /// windows before each column and before each row, and after the last.
+    Regular { columns: Vec<usize>, rows: Vec<usize> },
+    /// By camera, t·columns + s; of those that are not there, that of the next one.
+    Each(Vec<usize>),
 }
 
 /// The part of one camera's image that is there.
@@ -49,17 +58,12 @@ impl<T: Copy> SlabTexels<T> {
     /// # Errors
     /// `texels` must hold exactly one value for each.
     pub fn covering(coverage: Coverage, texels: Vec<T>) -> Result<Self, GeometryError> {
-        let mut end = 0usize;
-        let mut starts = Vec::new();
-        for camera in coverage.cameras() {
-            starts.push(end);
-            let area = coverage.window(camera).map_or(Some(0), |[u, v]| u.len().checked_mul(v.len()));
-            end = area.and_then(|area| end.checked_add(area)).unwrap_or(usize::MAX);
+        let expected = usize::try_from(coverage.texels()).unwrap_or(usize::MAX);
+        if texels.len() != expected {
+            return Err(GeometryError::Length { what: "slab texels", len: texels.len(), expected });
         }
-        if texels.len() != end {
-            return Err(GeometryError::Length { what: "slab texels", len: texels.len(), expected: end });
-        }
-        Ok(Self { coverage, starts, texels })
+        // Nothing overflows: all texels are there.
+        Ok(Self { starts: Starts::new(&coverage), coverage, texels })
     }
 
     /// What `coverage` keeps of these texels.
@@ -68,8 +72,7 @@ impl<T: Copy> SlabTexels<T> {
     /// If it asks for texels that are not there.
     pub fn crop(&self, coverage: Coverage) -> Result<Self, GeometryError> {
         let mut texels = Vec::new();
-        for camera in coverage.cameras() {
-            let Some([u, v]) = coverage.window(camera) else { continue };
+        for (camera, [u, v]) in coverage.stored() {
             let missing = || GeometryError::Window { start: u.start, end: u.end, texels: 0 };
             let image = self.image(camera).ok_or_else(missing)?;
             for row in v {
@@ -99,7 +102,7 @@ impl<T: Copy> SlabTexels<T> {
     /// Number of cameras along s and t.
     #[must_use]
     pub fn cameras(&self) -> [u32; 2] {
-        [self.coverage.columns().len() as u32, self.coverage.rows().len() as u32]
+        [self.coverage.columns().cameras(), self.coverage.rows().cameras()]
     }
 
     /// Texels of a whole image along u and v.
@@ -124,7 +127,7 @@ impl<T: Copy> SlabTexels<T> {
     #[must_use]
     pub fn image(&self, camera: [u32; 2]) -> Option<ImageWindow<'_, T>> {
         let [u, v] = self.coverage.window(camera)?;
-        let start = *self.starts.get(camera[1] as usize * self.coverage.columns().len() + camera[0] as usize)?;
+        let start = self.starts.get(camera, v.len(), self.cameras()[0])?;
         let texels = self.texels.get(start..)?.get(..u.len() * v.len())?;
         Some(ImageWindow { u, v, texels })
     }
@@ -134,6 +137,41 @@ impl<T: Copy> SlabTexels<T> {
     pub fn texel(&self, camera: [u32; 2], texel: [u32; 2]) -> Option<T> {
         self.image(camera)?.row(texel[1], texel[0]..texel[0].checked_add(1)?)?.first().copied()
     }
+}
+
+impl Starts {
+    fn new(coverage: &Coverage) -> Self {
+        if coverage.keeps_all_cameras() {
+            return Self::Regular { columns: sums(coverage.columns()), rows: sums(coverage.rows()) };
+        }
+        let mut end = 0;
+        let start = |camera| {
+            let start = end;
+            end += coverage.window(camera).map_or(0, |[u, v]| u.len() * v.len());
+            start
+        };
+        Self::Each(coverage.cameras().map(start).collect())
+    }
+
+    /// The place of the image of a camera (s, t), whose window has a height, in a grid of so many columns.
+    fn get(&self, [s, t]: [u32; 2], height: usize, across: u32) -> Option<usize> {
+        match self {
+            Self::Regular { columns, rows } => {
+                Some(rows.get(t as usize)? * columns.last()? + columns.get(s as usize)? * height)
+            }
+            Self::Each(starts) => starts.get(t as usize * across as usize + s as usize).copied(),
+        }
+    }
+}
+
+/// Texels in the windows before each one, and in all of them.
+fn sums(windows: &Windows) -> Vec<usize> {
+    let mut end = 0;
+    let ends = windows.iter().map(|window| {
+        end += window.len();
+        end
+    });
+    core::iter::once(0).chain(ends).collect()
 }
 
 impl<'a, T> ImageWindow<'a, T> {

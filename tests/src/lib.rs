@@ -1,6 +1,12 @@
-//! What the cross-crate tests share: small captures and a GPU that must exist.
+//! What the cross-crate tests share: small captures, a GPU that must exist, and the test vectors of the file format.
 
 #![forbid(unsafe_code)]
+
+#[path = "../../lf-format/tests/format/assemble.rs"]
+mod assemble;
+#[path = "../../lf-format/tests/format/layout.rs"]
+mod layout;
+pub mod vectors;
 
 use lf_compress::PackedLightField;
 use lf_compress::bc1::Quality;

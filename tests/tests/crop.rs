@@ -125,7 +125,7 @@ fn whole_images_come_back() {
     let texels: Vec<_> = (0..).zip(field.slabs()).map(|(i, slab)| noise(slab, i)).collect();
     let whole = PackedLightField::encode(field, &texels, TexelEncoding::Rgba8, Quality::Fast).unwrap();
     let cropped = whole.cropped().unwrap();
-    let back = cropped.whole().unwrap().decode(1 << 30).unwrap();
+    let back = cropped.whole(1 << 30).unwrap().decode(1 << 30).unwrap();
     for (slab, (before, after)) in texels.iter().zip(&back).enumerate() {
         let coverage = cropped.tilings()[slab].coverage();
         for camera in coverage.cameras() {

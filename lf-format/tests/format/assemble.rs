@@ -1,10 +1,10 @@
-//! A second writer, made from the specification alone: it can also write files that break the rules.
+//! A second writer, made from clauses 3 and 4 of the specification alone: it can also write files that break the rules.
 
-use glam::{DVec3, Vec3};
-use lf_format::{Container, FormatError, Limits, Metadata, Packing, SlabTiling, TexelEncoding, Writer};
-use lf_math::{Cell, Face, LightFieldGeometry, SampledAxis, Slab};
 use xxhash_rust::xxh64::xxh64;
 
+pub(crate) const MAGIC: &[u8; 12] = b"\x8ALFSLAB\0\r\n\x1A\n";
+
+/// A chunk with the fields of its entry that do not follow from its place.
 #[derive(Clone)]
 pub(crate) struct Chunk {
     pub(crate) tag: [u8; 4],
@@ -16,6 +16,7 @@ pub(crate) struct Chunk {
     pub(crate) raw_len: u64,
 }
 
+/// A file by its chunks, in the order of the directory.
 #[derive(Clone)]
 pub(crate) struct File {
     pub(crate) version: (u16, u16),
@@ -23,6 +24,7 @@ pub(crate) struct File {
 }
 
 impl Chunk {
+    /// A chunk that is not packed and belongs to no slab.
     pub(crate) fn new(tag: &[u8; 4], flags: u16, payload: Vec<u8>) -> Self {
         let raw_len = payload.len() as u64;
         Self { tag: *tag, flags, packing: 0, slab: 0, tile: 0, payload, raw_len }
@@ -39,17 +41,27 @@ impl Chunk {
 }
 
 impl File {
-    /// The chunks of the smallest file: see §10 of the specification.
-    pub(crate) fn smallest() -> Self {
-        let tile = vec![0x00, 0xF8, 0x1F, 0x00, 0, 0, 0, 0];
-        Self { version: (1, 0), chunks: vec![Chunk::new(b"GEOM", 1, smallest_geom()), Chunk::new(b"TILE", 1, tile)] }
+    pub(crate) fn new(chunks: Vec<Chunk>) -> Self {
+        Self { version: (1, 0), chunks }
     }
 
-    /// [`Self::smallest`] with another chunk between its two.
-    pub(crate) fn with(chunk: Chunk) -> Self {
-        let mut file = Self::smallest();
-        file.chunks.insert(1, chunk);
-        file
+    /// The same file with one chunk more.
+    pub(crate) fn with(mut self, index: usize, chunk: Chunk) -> Self {
+        self.chunks.insert(index, chunk);
+        self
+    }
+
+    /// The same file with other bytes somewhere in the payload of a chunk.
+    pub(crate) fn patch(mut self, chunk: usize, at: usize, bytes: &[u8]) -> Self {
+        self.chunks[chunk].payload[at..at + bytes.len()].copy_from_slice(bytes);
+        self
+    }
+
+    /// Where the payload of a chunk begins (§4.5).
+    pub(crate) fn payload_at(&self, chunk: usize) -> usize {
+        let before = self.chunks[..chunk].iter().map(|chunk| chunk.payload.len());
+        let start = entry_at(self.chunks.len()).next_multiple_of(64);
+        before.fold(start, |at, len| (at + len).next_multiple_of(64))
     }
 
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
@@ -66,7 +78,7 @@ impl File {
             body.extend(&chunk.payload);
         }
         body[64..64 + directory.len()].copy_from_slice(&directory);
-        body[..12].copy_from_slice(b"\x8ALFSLAB\0\r\n\x1A\n");
+        body[..12].copy_from_slice(MAGIC);
         body[12..14].copy_from_slice(&self.version.0.to_le_bytes());
         body[14..16].copy_from_slice(&self.version.1.to_le_bytes());
         let file_len = body.len() as u64;
@@ -78,6 +90,19 @@ impl File {
     }
 }
 
+/// Where an entry of the directory begins.
+pub(crate) fn entry_at(index: usize) -> usize {
+    64 + 48 * index
+}
+
+/// A file with other bytes somewhere in header or directory, and right checksums of both.
+pub(crate) fn patched(file: &File, at: usize, bytes: &[u8]) -> Vec<u8> {
+    let mut file = file.to_bytes();
+    file[at..at + bytes.len()].copy_from_slice(bytes);
+    reseal(&mut file);
+    file
+}
+
 /// Puts in the right checksums of directory and header, after a change to them.
 pub(crate) fn reseal(file: &mut [u8]) {
     let count = u32::from_le_bytes(file[32..36].try_into().unwrap()) as usize;
@@ -87,55 +112,4 @@ pub(crate) fn reseal(file: &mut [u8]) {
     }
     let checksum = xxh64(&file[..56], 0);
     file[56..64].copy_from_slice(&checksum.to_le_bytes());
-}
-
-/// The `GEOM` payload of one +Z slab, one camera, 4×4 texels.
-fn smallest_geom() -> Vec<u8> {
-    let mut out = vec![0; 24];
-    out.extend([0.5f32; 3].into_iter().flat_map(f32::to_le_bytes));
-    out.extend(1u32.to_le_bytes());
-    out.extend([4, 1, 0, 0]);
-    out.extend(0.5f32.to_le_bytes());
-    for (first, step, count) in [(0.0f32, 1.0f32, 1u32), (0.0, 1.0, 1), (-0.75, 0.5, 4), (-0.75, 0.5, 4)] {
-        out.extend(first.to_le_bytes());
-        out.extend(step.to_le_bytes());
-        out.extend(count.to_le_bytes());
-    }
-    out.extend(0f32.to_le_bytes());
-    out.extend([1u32; 2].into_iter().flat_map(u32::to_le_bytes));
-    out
-}
-
-/// The same file by the library's writer.
-pub(crate) fn smallest_writer() -> Writer {
-    let st = SampledAxis::new(0.0, 1.0, 1).unwrap();
-    let uv = SampledAxis::new(-0.75, 0.5, 4).unwrap();
-    let slab = Slab::new(Face::PosZ, 0.5, [st; 2], [uv; 2], None).unwrap();
-    let geometry = LightFieldGeometry::new(Cell::new(DVec3::ZERO, Vec3::splat(0.5)).unwrap(), vec![slab]).unwrap();
-    let tiling = SlabTiling::new(&slab, TexelEncoding::Bc1, [1, 1]).unwrap();
-    let mut writer = Writer::new(geometry, vec![tiling], Metadata::new()).unwrap();
-    writer.add_tile(0, 0, Packing::None, vec![0x00, 0xF8, 0x1F, 0x00, 0, 0, 0, 0]).unwrap();
-    writer
-}
-
-/// Parses with default limits.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Container<'_>, FormatError> {
-    Container::parse(bytes, &Limits::default())
-}
-
-/// The error of a file that must be refused.
-pub(crate) fn refusal(bytes: &[u8]) -> FormatError {
-    match parse(bytes) {
-        Ok(_) => panic!("the file was accepted"),
-        Err(error) => error,
-    }
-}
-
-/// Asserts that a file is refused as malformed for breaking one clause at one byte.
-#[track_caller]
-pub(crate) fn assert_breaks(bytes: &[u8], expected: &str, at: usize) {
-    match refusal(bytes) {
-        FormatError::Malformed { clause, offset, .. } if (clause, offset) == (expected, at as u64) => {}
-        other => panic!("expected a break of {expected} at byte {at}, got: {other}"),
-    }
 }

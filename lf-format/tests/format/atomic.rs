@@ -3,9 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use lf_format::{FormatError, write_atomic};
-
-use crate::assemble::smallest_writer;
+use lf_format::write_atomic;
 
 /// The names in a folder.
 fn names(folder: &Path) -> Vec<String> {
@@ -47,18 +45,6 @@ fn a_target_that_cannot_be_replaced_leaves_no_temporary_file() {
     assert!(write_atomic(&folder.path().join(".."), |_| Ok(())).is_err());
     assert!(write_atomic(&folder.path().join("missing/out"), |_| Ok(())).is_err());
     assert_eq!(names(folder.path()), ["out"]);
-}
-
-#[test]
-fn an_unwritable_target_is_an_io_error_with_its_path() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("missing/a.lfslab");
-    match smallest_writer().save(&path).unwrap_err() {
-        FormatError::Io { path: named, source } => {
-            assert_eq!((named, source.kind()), (path, io::ErrorKind::NotFound));
-        }
-        other => panic!("{other}"),
-    }
 }
 
 #[cfg(unix)]

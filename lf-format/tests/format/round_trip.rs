@@ -1,162 +1,197 @@
-//! What is written is read back, and written again gives the same bytes.
+//! What is written is read back, and both writers write the same.
+
+use std::io::Cursor;
 
 use glam::{DVec3, Vec3};
-use lf_format::{Metadata, Packing, SlabTiling, Tag, TexelEncoding, Writer};
-use lf_math::{Cell, Face, LightFieldGeometry, SampledAxis, Slab};
+use lf_format::{CameraPlace, Contents, FileReader, Limits, Metadata, Packing, SlabTiling, TexelEncoding, Writer};
+use lf_math::{Cell, Coverage, Face, LightFieldGeometry, SampledAxis, Slab};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::subsequence;
 
-use crate::assemble::{File, parse, smallest_writer};
+use crate::layout::{self, Axis, Field, Window};
+use crate::readers::sound;
 
-fn axis(max_count: u32) -> impl Strategy<Value = SampledAxis> {
+fn axis(max_count: u32) -> impl Strategy<Value = Axis> {
     (-10.0f32..10.0, 1e-3f32..2.0, 1..=max_count)
-        .prop_map(|(first, step, count)| SampledAxis::new(first, step, count).unwrap())
 }
 
-fn slab(face: Face) -> impl Strategy<Value = (Slab, SlabTiling)> {
-    let axes = ([axis(5), axis(5)], [axis(9), axis(9)]);
-    let encoding = prop_oneof![Just(TexelEncoding::Bc1), Just(TexelEncoding::Rgba8)];
-    let focal_depth = prop::option::of(0.1f32..100.0);
-    (axes, -2.0f32..2.0, focal_depth, encoding, [1u32..4, 1u32..4]).prop_map(
+/// A window of an image of so many blocks, often empty or whole.
+fn window(blocks: u32) -> impl Strategy<Value = Window> {
+    prop_oneof![
+        Just([0, 0]),
+        Just([0, blocks]),
+        (0..blocks).prop_flat_map(move |first| (Just(first), 1..=blocks - first)).prop_map(Into::into)
+    ]
+}
+
+/// A slab without anything left out.
+fn whole_slab(face: u8) -> impl Strategy<Value = layout::Slab> {
+    let axes = ([axis(5), axis(5)], [axis(13), axis(9)]);
+    let focal_depth = prop_oneof![Just(0.0), 0.1f32..100.0];
+    (axes, -2.0f32..2.0, focal_depth, 1u8..=3, [1u32..4, 1u32..4]).prop_map(
         move |((st, uv), plane, focal_depth, encoding, per_tile)| {
-            let slab = Slab::new(face, plane, st, uv, focal_depth).unwrap();
-            (slab, SlabTiling::new(&slab, encoding, per_tile).unwrap())
+            let per_tile = [0, 1].map(|i: usize| per_tile[i].min(st[i].2));
+            layout::Slab { face, encoding, plane, st, uv, focal_depth, per_tile, crop: None, mask: None }
         },
     )
 }
 
-fn field() -> impl Strategy<Value = (LightFieldGeometry, Vec<SlabTiling>)> {
-    let cell = (prop::array::uniform3(-1e6f64..1e6), prop::array::uniform3(0.01f32..10.0))
-        .prop_map(|(center, half)| Cell::new(DVec3::from(center), Vec3::from(half)).unwrap());
-    let slabs =
-        subsequence(Face::ALL.to_vec(), 1..=6).prop_flat_map(|faces| faces.into_iter().map(slab).collect::<Vec<_>>());
-    (cell, slabs).prop_map(|(cell, slabs)| {
-        let (slabs, tilings) = slabs.into_iter().unzip();
-        (LightFieldGeometry::new(cell, slabs).unwrap(), tilings)
+/// A slab with windows and a mask, or none; what stores nothing becomes whole.
+fn slab(face: u8) -> impl Strategy<Value = layout::Slab> {
+    let left_out = |slab: layout::Slab| {
+        let windows = [0, 1].map(|i| {
+            let (cameras, blocks) = (slab.cameras()[i] as usize, slab.resolution()[i].div_ceil(4));
+            vec(window(blocks), cameras)
+        });
+        let cameras = slab.cameras().iter().product::<u32>() as usize;
+        (Just(slab), prop::option::of(windows), prop::option::of(vec(prop::bool::weighted(0.6), cameras)))
+    };
+    whole_slab(face).prop_flat_map(left_out).prop_map(|(slab, crop, mask)| with_left_out(slab, crop, mask))
+}
+
+fn cameras_of(slab: &layout::Slab) -> impl Iterator<Item = [u32; 2]> + use<> {
+    let [across, down] = slab.cameras();
+    (0..down).flat_map(move |t| (0..across).map(move |s| [s, t]))
+}
+
+/// The slab with chunks only where they leave something out, and something stored.
+fn with_left_out(slab: layout::Slab, crop: Option<[Vec<Window>; 2]>, mask: Option<Vec<bool>>) -> layout::Slab {
+    let blocks = slab.resolution().map(|n| n.div_ceil(4));
+    let whole = |windows: &[Vec<Window>; 2]| (0..2).all(|i| windows[i].iter().all(|window| *window == [0, blocks[i]]));
+    let cropped = layout::Slab { crop: crop.filter(|windows| !whole(windows)), ..slab.clone() };
+    let windowed: Vec<bool> = cameras_of(&slab).map(|camera| cropped.stores(camera)).collect();
+    let mask = mask.map(|mask| mask.iter().zip(&windowed).map(|(&a, &b)| a && b).collect::<Vec<_>>());
+    let masked = layout::Slab { mask: mask.filter(|mask| *mask != windowed), ..cropped };
+    if cameras_of(&slab).any(|camera| masked.stores(camera)) { masked } else { slab }
+}
+
+fn metadata() -> impl Strategy<Value = Vec<(String, String)>> {
+    let pair = ("[a-z0-9._-]{1,64}", "[^\x00-\x08\x0B-\x1F\x7F]{0,40}");
+    prop::collection::btree_map(pair.0, pair.1, 0..5).prop_map(|map| map.into_iter().collect())
+}
+
+fn field() -> impl Strategy<Value = Field> {
+    let cell = (prop::array::uniform3(-1e6f64..1e6), prop::array::uniform3(0.01f32..10.0));
+    let slabs = subsequence((0..6).collect::<Vec<u8>>(), 1..=6)
+        .prop_flat_map(|faces| faces.into_iter().map(slab).collect::<Vec<_>>());
+    (cell, slabs, metadata()).prop_map(|((center, half_extent), slabs, metadata)| Field {
+        center,
+        half_extent,
+        slabs,
+        metadata,
     })
 }
 
-fn metadata() -> impl Strategy<Value = Metadata> {
-    vec(("[a-z0-9._-]{1,64}", "[^\x00-\x08\x0B-\x1F\x7F]{0,40}"), 0..5).prop_map(|pairs| {
-        let mut metadata = Metadata::new();
-        for (key, value) in pairs {
-            metadata.insert(key, value).unwrap();
-        }
-        metadata
-    })
+/// The slab in the library's terms.
+fn library_slab(slab: &layout::Slab) -> (Slab, SlabTiling) {
+    let axis = |(first, step, count): Axis| SampledAxis::new(first, step, count).unwrap();
+    let focal_depth = Some(slab.focal_depth).filter(|&depth| depth > 0.0);
+    let face = Face::from_index(slab.face).unwrap();
+    let shape = Slab::new(face, slab.plane, slab.st.map(axis), slab.uv.map(axis), focal_depth).unwrap();
+    let windows = |axis: usize| {
+        let texels = slab.resolution()[axis];
+        let window = |i| slab.window(axis, i);
+        (0..slab.cameras()[axis]).map(window).map(|[a, n]| (4 * a).min(texels)..(4 * (a + n)).min(texels)).collect()
+    };
+    let mut coverage = Coverage::new(&shape, windows(0), windows(1)).unwrap();
+    if let Some(mask) = &slab.mask {
+        coverage = coverage.with_cameras(mask.clone()).unwrap();
+    }
+    let encoding = [TexelEncoding::Bc1, TexelEncoding::Rgba8, TexelEncoding::Rgb16F][usize::from(slab.encoding) - 1];
+    (shape, SlabTiling::covering(&shape, encoding, slab.per_tile, coverage).unwrap())
+}
+
+/// The light field in the library's terms.
+fn contents(field: &Field) -> Contents {
+    let cell = Cell::new(DVec3::from(field.center), Vec3::from(field.half_extent)).unwrap();
+    let (slabs, tilings) = field.slabs.iter().map(library_slab).unzip();
+    let mut metadata = Metadata::new();
+    for (key, value) in &field.metadata {
+        metadata.insert(key, value).unwrap();
+    }
+    Contents::new(LightFieldGeometry::new(cell, slabs).unwrap(), tilings, metadata)
 }
 
 /// Deterministic bytes for a tile: raw, or of a packed length that depends on the tile.
-fn stored(tiling: &SlabTiling, slab: usize, tile: u32) -> (Packing, Vec<u8>) {
-    let packing = if tile.is_multiple_of(2) { Packing::None } else { Packing::Zstd };
-    let len = if packing == Packing::None { tiling.raw_len() as usize } else { 1 + 7 * tile as usize };
+fn stored(field: &Field, slab: usize, tile: u32) -> (u8, Vec<u8>) {
+    let packing = (tile % 2) as u8;
+    let len = if packing == 0 { field.slabs[slab].raw_len(tile) } else { 1 + 7 * tile as usize };
     (packing, (0..len).map(|i| (i * 31 + slab * 7 + tile as usize) as u8).collect())
 }
 
-fn all_tiles(tilings: &[SlabTiling]) -> Vec<(usize, u32)> {
-    let of_slab = |(slab, tiling): (usize, &SlabTiling)| (0..tiling.tile_count()).map(move |tile| (slab, tile));
-    tilings.iter().enumerate().flat_map(of_slab).collect()
-}
-
-fn write(
-    geometry: &LightFieldGeometry,
-    tilings: &[SlabTiling],
-    metadata: &Metadata,
-    order: impl Iterator<Item = (usize, u32)>,
-) -> Vec<u8> {
-    let mut writer = Writer::new(geometry.clone(), tilings.to_vec(), metadata.clone()).unwrap();
-    for (slab, tile) in order {
-        let (packing, bytes) = stored(&tilings[slab], slab, tile);
-        writer.add_tile(slab, tile, packing, bytes).unwrap();
-    }
-    writer.to_bytes().unwrap()
-}
+const PACKINGS: [Packing; 2] = [Packing::None, Packing::Zstd];
 
 proptest! {
     #[test]
-    fn what_is_written_is_read((geometry, tilings) in field(), metadata in metadata()) {
-        let tiles = all_tiles(&tilings);
-        let bytes = write(&geometry, &tilings, &metadata, tiles.iter().copied());
-        let file = parse(&bytes).unwrap();
-        prop_assert_eq!(file.geometry(), &geometry);
-        prop_assert_eq!(file.tilings(), &tilings[..]);
-        prop_assert_eq!(file.metadata(), &metadata);
-        prop_assert_eq!(file.version(), (1, 0));
-        for &(slab, tile) in &tiles {
-            let got = file.tile(slab, tile).unwrap();
-            prop_assert_eq!((got.packing, got.bytes.to_vec()), stored(&tilings[slab], slab, tile));
-            prop_assert_eq!(got.raw_len, tilings[slab].raw_len());
-            prop_assert_eq!((got.bytes.as_ptr() as usize - bytes.as_ptr() as usize) % 64, 0);
+    fn both_writers_write_the_same(field in field()) {
+        let mut writer = Writer::new(Cursor::new(Vec::new()), contents(&field)).unwrap();
+        while let Some((slab, tile)) = writer.next_tile() {
+            let (packing, bytes) = stored(&field, slab, tile);
+            writer.tile(PACKINGS[usize::from(packing)], &bytes).unwrap();
         }
-        prop_assert_eq!(file.chunks().filter(|chunk| chunk.tag == Tag::TILE).count(), tiles.len());
-        // Reading back and adding in another order gives the same bytes.
-        let again = write(file.geometry(), file.tilings(), file.metadata(), tiles.into_iter().rev());
-        prop_assert_eq!(again, bytes);
+        let bytes = writer.finish().unwrap().into_inner();
+        prop_assert_eq!(field.file(|slab, tile| stored(&field, slab, tile)).to_bytes(), bytes);
     }
 
     #[test]
-    fn tile_sizes_follow_the_formulas((geometry, tilings) in field()) {
-        for (slab, tiling) in geometry.slabs().iter().zip(tilings) {
-            let per_texel_x2 = if tiling.encoding() == TexelEncoding::Bc1 { 1 } else { 8 };
-            for i in 0..2 {
-                let (cameras, per) = (slab.cameras()[i], tiling.cameras_per_tile()[i]);
-                prop_assert!(tiling.tiles()[i] * per >= cameras && (tiling.tiles()[i] - 1) * per < cameras);
-                prop_assert!((slab.resolution()[i]..slab.resolution()[i] + 4).contains(&tiling.image_pitch()[i]));
-                prop_assert_eq!(tiling.image_pitch()[i] % 4, 0);
-                prop_assert_eq!(tiling.tile_size()[i], per * tiling.image_pitch()[i]);
+    fn what_is_written_is_read(field in field()) {
+        let bytes = field.file(|slab, tile| stored(&field, slab, tile)).to_bytes();
+        let (file, expected) = (sound(&bytes), contents(&field));
+        prop_assert_eq!(file.geometry(), &expected.geometry);
+        prop_assert_eq!(file.tilings(), &expected.tilings[..]);
+        prop_assert_eq!(file.metadata(), &expected.metadata);
+        prop_assert_eq!((file.version(), file.file_len()), ((1, 0), bytes.len() as u64));
+        let (mut reader, mut buffer) = (FileReader::open(Cursor::new(&bytes), &Limits::default()).unwrap(), Vec::new());
+        for (slab, tile) in (0..).zip(&field.slabs).flat_map(|(i, slab)| slab.tiles().into_iter().map(move |tile| (i, tile))) {
+            let got = file.tile(slab, tile).unwrap();
+            let (packing, payload) = stored(&field, slab, tile);
+            prop_assert_eq!((got.packing, got.bytes), (PACKINGS[usize::from(packing)], &payload[..]));
+            prop_assert_eq!(got.raw_len, field.slabs[slab].raw_len(tile) as u64);
+            prop_assert_eq!((got.bytes.as_ptr() as usize - bytes.as_ptr() as usize) % 64, 0);
+            prop_assert_eq!(reader.tile(slab, tile, &mut buffer).unwrap(), got);
+        }
+    }
+
+    /// §7.1 and §7.2, by a second account of them.
+    #[test]
+    fn tiles_and_places_are_those_of_the_specification(field in field()) {
+        for slab in &field.slabs {
+            let (_, tiling) = library_slab(slab);
+            prop_assert_eq!(tiling.stored_tiles().collect::<Vec<_>>(), slab.tiles());
+            for tile in slab.tiles() {
+                prop_assert_eq!(tiling.cameras_of(tile), slab.cameras_of(tile));
+                prop_assert_eq!(tiling.tile_size(tile), slab.blocks(tile).map(|n| 4 * n));
+                prop_assert_eq!(tiling.raw_len(tile), slab.raw_len(tile) as u64);
             }
-            let [width, height] = tiling.tile_size().map(u64::from);
-            prop_assert_eq!(2 * tiling.raw_len(), width * height * per_texel_x2);
+            for camera in cameras_of(slab) {
+                prop_assert_eq!(tiling.place(camera), place(slab, camera), "{:?}", camera);
+            }
         }
     }
 }
 
-/// §7.6 the other way round: every place of every tile holds the camera that the formulas of §7.1 and §7.2 give, or none.
+/// Where §7.2 puts a camera.
+fn place(slab: &layout::Slab, camera: [u32; 2]) -> Option<CameraPlace> {
+    slab.stores(camera).then(|| {
+        let across = slab.cameras()[0].div_ceil(slab.per_tile[0]);
+        let tile = camera[1] / slab.per_tile[1] * across + camera[0] / slab.per_tile[0];
+        let corner = [0, 1].map(|axis| {
+            let first = camera[axis] / slab.per_tile[axis] * slab.per_tile[axis];
+            (first..camera[axis]).map(|i| 4 * slab.window(axis, i)[1]).sum()
+        });
+        let window = [0, 1].map(|axis| {
+            let [first, number] = slab.window(axis, camera[axis]);
+            4 * first..(4 * (first + number)).min(slab.resolution()[axis])
+        });
+        CameraPlace { tile, corner, window }
+    })
+}
+
 #[test]
-fn every_camera_has_its_place() {
-    let axis = |count| SampledAxis::new(0.0, 1.0, count).unwrap();
-    let slab = Slab::new(Face::NegY, 0.0, [axis(7), axis(5)], [axis(6), axis(9)], None).unwrap();
-    let tiling = SlabTiling::new(&slab, TexelEncoding::Bc1, [3, 2]).unwrap();
-    assert_eq!((tiling.cameras(), tiling.resolution(), tiling.tiles()), ([7, 5], [6, 9], [3, 3]));
-    let mut placed = 0;
-    for (tile, t, s) in (0..9).flat_map(|tile| (0..2).flat_map(move |t| (0..3).map(move |s| (tile, t, s)))) {
-        let camera = [tile % 3 * 3 + s, tile / 3 * 2 + t];
-        let exists = camera[0] < 7 && camera[1] < 5;
-        assert_eq!(tiling.place(camera), exists.then_some((tile, [8 * s, 12 * t])), "{camera:?}");
-        placed += u32::from(exists);
-    }
-    assert_eq!(placed, 7 * 5);
+fn there_is_no_place_outside_the_grid() {
+    let (_, tiling) = library_slab(&layout::Slab { st: [(0.0, 1.0, 7), (0.0, 1.0, 5)], ..layout::Slab::smallest() });
     for outside in [[7, 0], [0, 5], [u32::MAX, 0], [0, u32::MAX]] {
         assert_eq!(tiling.place(outside), None);
     }
-}
-
-#[test]
-fn two_writers_agree() {
-    assert_eq!(smallest_writer().to_bytes().unwrap(), File::smallest().to_bytes());
-}
-
-#[test]
-fn saving_writes_the_same_bytes() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.lfslab");
-    let len = smallest_writer().save(&path).unwrap();
-    let bytes = std::fs::read(&path).unwrap();
-    assert_eq!(len, bytes.len() as u64);
-    assert_eq!(bytes, smallest_writer().to_bytes().unwrap());
-}
-
-#[test]
-fn absent_tiles_are_none() {
-    let bytes = File::smallest().to_bytes();
-    let file = parse(&bytes).unwrap();
-    assert!(file.tile(0, 0).is_some() && file.tile(0, 1).is_none() && file.tile(1, 0).is_none());
-}
-
-#[test]
-fn chunks_name_themselves() {
-    let bytes = File::smallest().to_bytes();
-    let listed: Vec<String> = parse(&bytes).unwrap().chunks().map(ToString::to_string).collect();
-    assert_eq!(listed, ["chunk GEOM", "chunk TILE (slab 0, tile 0)"]);
 }
