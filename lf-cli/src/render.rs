@@ -15,7 +15,7 @@ use crate::capture::MAX_DECODED_BYTES;
 use crate::device::{CpuMethod, GpuMethod, Method, open_gpu, or_cpu};
 use crate::frames::FOV_Y;
 use crate::input::load;
-use crate::output::{check_writable, png, print, write};
+use crate::output::{check_writable, megabytes, png, print, write};
 use crate::pictures::over;
 use crate::sources::{builtin, from_file};
 
@@ -41,7 +41,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
 
 fn draw_on_gpu(gpu: &Gpu, field: &PackedLightField, mesh: &TriangleMesh, camera: &Pinhole) -> Result<Image<[u8; 4]>> {
     let texture = SlabTexture::new(gpu, field)?;
-    eprintln!("slabs    {}", texture.storage());
+    eprintln!("slabs    {}, {}", texture.storage(), megabytes(texture.bytes()));
     let pass = ReflectionPass::slabs(gpu, &texture)?;
     let target = Target::new(gpu, camera.width(), camera.height())?;
     let mesh = MirrorMesh::new(gpu, mesh)?;

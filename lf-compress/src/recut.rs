@@ -35,8 +35,8 @@ impl PackedLightField {
     pub fn whole(&self, max_bytes: u64) -> Result<Self, PackError> {
         let (slabs, tilings) = (self.geometry().slabs(), self.tilings());
         let slab_bytes = |(slab, tiling): (&Slab, &SlabTiling)| {
-            let padded = slab.resolution().map(|texels| u64::from(texels).next_multiple_of(4) / 4);
-            let counts = slab.cameras().map(u64::from).into_iter().chain(padded);
+            let blocks = slab.resolution().map(|texels| u64::from(texels).div_ceil(4));
+            let counts = slab.cameras().map(u64::from).into_iter().chain(blocks);
             counts.fold(tiling.encoding().block_len(), u64::saturating_mul)
         };
         let bytes = slabs.iter().zip(tilings).map(slab_bytes).fold(0, u64::saturating_add);

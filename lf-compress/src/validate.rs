@@ -78,11 +78,10 @@ fn check_tiles<R: Read + Seek>(file: &mut FileReader<R>, report: &mut impl FnMut
             Ok(check_tile(&stored, &tilings[slab], slab, entry.tile))
         });
         match found {
-            Ok(Ok(())) => {}
+            // A wrong checksum, which `verify` has found already.
+            Ok(Ok(())) | Err(FormatError::Malformed { .. }) => {}
             Ok(Err(error)) => report(Finding::in_tile(entry, &error)),
             Err(error @ FormatError::Io { .. }) => return Err(error),
-            // The checksum, which `verify` has found already.
-            Err(FormatError::Malformed { .. }) => {}
             Err(error) => report(Finding { offset: Some(entry.offset), ..Finding::new(Severity::Error, &error) }),
         }
     }

@@ -224,7 +224,7 @@ mod tests {
         }
         assert!(cropped.crop(Coverage::whole(&slab())).is_err());
         assert!(Coverage::new(&slab(), vec![0..2, 1..5], vec![0..5; 3]).is_err());
-        assert!(Coverage::new(&slab(), vec![0..2], vec![0..5; 3]).is_err());
+        assert!(Coverage::new(&slab(), vec![0..2; 1], vec![0..5; 3]).is_err());
         assert!(Coverage::whole(&slab()).is_whole() && !kept.is_whole());
     }
 }
