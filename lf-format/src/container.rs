@@ -4,11 +4,11 @@ use alloc::borrow::Cow;
 use alloc::format;
 use core::ops::Deref;
 
-use crate::bytes::range;
+use crate::bytes::{range, zeros};
 use crate::structure::Source;
 #[cfg(feature = "std")]
 use crate::{ChunkEntry, ExtraChunk};
-use crate::{FormatError, Limits, StoredTile, Structure};
+use crate::{FormatError, Limits, Rule, StoredTile, Structure};
 
 /// A file in memory, or mapped into it. Its [`Structure`] is validated; tiles are borrowed, and checked when they are asked
 /// for.
@@ -44,10 +44,11 @@ impl<'a> Container<'a> {
     /// Checks the bytes of every chunk and all padding, and hands each error to `report`: together with
     /// [`parse`](Self::parse) every byte of the file has then been looked at.
     pub fn verify(&self, mut report: impl FnMut(FormatError)) {
-        for index in 0..self.structure.chunks().len() {
-            let (start, end) = (self.structure.padding_start(index), self.structure.chunks()[index].end());
-            let bytes = range(self.bytes, start, end.saturating_sub(start)).unwrap_or_default();
-            self.structure.verify_chunk(index, bytes).unwrap_or_else(&mut report);
+        for (index, entry) in self.structure.chunks().iter().enumerate() {
+            let start = self.structure.padding_start(index);
+            let padding = range(self.bytes, start, entry.offset.saturating_sub(start)).unwrap_or_default();
+            let padded = zeros(padding, start, Rule::Padding, "a padding byte");
+            padded.and_then(|()| entry.verify(index, self.payload(index))).unwrap_or_else(&mut report);
         }
     }
 

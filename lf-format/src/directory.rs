@@ -133,9 +133,21 @@ impl ChunkEntry {
 
     /// Compares the checksum with that of the payload; `index` is the entry's number in the directory.
     pub(crate) fn verify(&self, index: usize, stored: &[u8]) -> Result<(), FormatError> {
+        self.verify_digest(index, self.compute_checksum(stored))
+    }
+
+    /// Compares the checksum with a digest by [`Self::hasher`] of the whole payload.
+    pub(crate) fn verify_digest(&self, index: usize, digest: u64) -> Result<(), FormatError> {
         let name = format_args!("{self} bytes {}..{}", self.offset, self.end());
         let at = entry_offset(index).saturating_add(40);
-        checksum(self.checksum, self.compute_checksum(stored), at, Rule::Checksum, name)
+        checksum(self.checksum, digest, at, Rule::Checksum, name)
+    }
+
+    /// A checksum in the making that has taken in all that comes before the payload.
+    pub(crate) fn hasher(&self) -> Xxh64 {
+        let mut hash = Xxh64::new(0);
+        hash.update(&self.identity());
+        hash
     }
 
     /// Where the payload ends, bytes from the start of the file.
@@ -156,8 +168,7 @@ impl ChunkEntry {
     }
 
     fn compute_checksum(&self, stored: &[u8]) -> u64 {
-        let mut hash = Xxh64::new(0);
-        hash.update(&self.identity());
+        let mut hash = self.hasher();
         hash.update(stored);
         hash.digest()
     }

@@ -5,8 +5,8 @@ use crate::FormatError;
 /// Upper bound on the memory that reading a file may take (spec §10).
 ///
 /// One budget covers everything that is allocated because of what the file says: directory, metadata, windows and masks
-/// while it is opened, and later whatever the caller unpacks, if the caller asks for it by [`Budget::take`]. It is checked
-/// before anything is allocated.
+/// while it is opened, what is left of it each stored tile that is read, and whatever the caller unpacks, if the caller asks for it
+/// by [`Budget::take`]. It is checked before anything is allocated.
 ///
 /// ```
 /// let small = lf_format::Limits { memory_bytes: 64 << 20 };

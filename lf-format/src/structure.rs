@@ -6,7 +6,6 @@ use alloc::vec::Vec;
 
 use lf_math::{Coverage, LightFieldGeometry};
 
-use crate::bytes::zeros;
 use crate::directory::{entry_offset, parse as parse_directory};
 use crate::geometry::Storage;
 use crate::header::{HEADER_LEN, Header};
@@ -139,15 +138,6 @@ impl Structure {
     /// Where the padding before a chunk begins.
     pub(crate) fn padding_start(&self, index: usize) -> u64 {
         index.checked_sub(1).map_or(entry_offset(self.chunks.len()), |before| self.chunks[before].end())
-    }
-
-    /// Checks a chunk of which `bytes` holds the padding before it and its payload.
-    pub(crate) fn verify_chunk(&self, index: usize, bytes: &[u8]) -> Result<(), FormatError> {
-        let (entry, start) = (&self.chunks[index], self.padding_start(index));
-        // At most 63 bytes of padding come before a payload.
-        let (padding, payload) = bytes.split_at(entry.offset.saturating_sub(start) as usize);
-        zeros(padding, start, Rule::Padding, "a padding byte")?;
-        entry.verify(index, payload)
     }
 }
 

@@ -9,7 +9,7 @@ use std::io::{BufReader, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use lf_format::{Contents, FileReader, Limits, Metadata, Packing, SlabTiling, TexelEncoding, Writer};
+use lf_format::{Contents, FileReader, FormatError, Limits, Metadata, Packing, SlabTiling, TexelEncoding, Writer};
 use lf_math::{Cell, Face, LightFieldGeometry, SampledAxis, Slab};
 
 /// Bytes of a tile: one image of 2048 × 2048 texels, four bytes each.
@@ -47,8 +47,11 @@ fn write(path: &Path, tiles: u32) -> u64 {
 }
 
 fn read(path: &Path, tiles: u32) {
-    // What it takes beside its tiles is little, and no tile is paid for that is not unpacked.
-    let limits = Limits { memory_bytes: 1 << 20 };
+    // One tile at a time, and what it takes beside its tiles is little.
+    let limits = Limits { memory_bytes: TILE as u64 + (1 << 20) };
+    let short = Limits { memory_bytes: TILE as u64 - 1 };
+    let mut refused = FileReader::open(File::open(path).unwrap(), &short).unwrap();
+    assert!(matches!(refused.tile(0, 0, &mut Vec::new()), Err(FormatError::LimitExceeded { .. })));
     let mut file = FileReader::open(BufReader::new(File::open(path).unwrap()), &limits).unwrap();
     let mut buffer = Vec::new();
     for tile in 0..tiles {
