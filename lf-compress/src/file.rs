@@ -41,9 +41,18 @@ impl PackedLightField {
     pub fn read_file<R: Read + Seek>(file: &mut FileReader<R>) -> Result<Self, PackError> {
         take_tiles(file)?;
         let (geometry, tilings) = (file.geometry().clone(), file.tilings().to_vec());
-        let mut tiles = Vec::new();
-        for (slab, tiling) in tilings.iter().enumerate() {
-            tiles.push(read_slab(file, slab, tiling)?);
+        let stored = tilings.iter().enumerate().flat_map(|(slab, t)| t.stored_tiles().map(move |tile| (slab, tile)));
+        let stored: Vec<(usize, u32)> = stored.collect();
+        let mut tiles = vec![Vec::new(); tilings.len()];
+        let mut buffers = vec![Vec::new(); BATCH];
+        for batch in stored.chunks(BATCH) {
+            let mut found = Vec::new();
+            for (&(slab, tile), buffer) in batch.iter().zip(&mut buffers) {
+                found.push(file.tile(slab, tile, buffer)?);
+            }
+            let unpack = |(&(slab, tile), stored)| unpack(&stored, &tilings[slab], slab, tile);
+            let raw = batch.par_iter().zip(found).map(unpack).collect::<Result<Vec<_>, _>>()?;
+            batch.iter().zip(raw).for_each(|(&(slab, _), raw)| tiles[slab].push(raw));
         }
         Self::from_tiles(geometry, tilings, tiles)
     }
@@ -103,27 +112,6 @@ fn take_tiles(file: &Structure) -> Result<(), FormatError> {
     let raw = |tiling: &SlabTiling| tiling.stored_tiles().map(|tile| tiling.raw_len(tile)).fold(0, u64::saturating_add);
     let bytes = file.tilings().iter().map(raw).fold(0, u64::saturating_add);
     file.budget().take("the unpacked light field", bytes)
-}
-
-fn read_slab<R: Read + Seek>(
-    file: &mut FileReader<R>,
-    slab: usize,
-    tiling: &SlabTiling,
-) -> Result<Vec<Vec<u8>>, PackError> {
-    let stored: Vec<u32> = tiling.stored_tiles().collect();
-    let mut tiles = Vec::new();
-    let mut buffers = vec![Vec::new(); BATCH];
-    for batch in stored.chunks(BATCH) {
-        let read =
-            |(&tile, buffer): (&u32, &mut Vec<u8>)| file.tile(slab, tile, buffer).map(|t| (t.packing, t.raw_len));
-        let found = batch.iter().zip(&mut buffers).map(read).collect::<Result<Vec<_>, _>>()?;
-        let unpacked =
-            (batch, &buffers[..batch.len()], found).into_par_iter().map(|(&tile, bytes, (packing, raw_len))| {
-                unpack(&StoredTile { packing, bytes, raw_len }, tiling, slab, tile)
-            });
-        tiles.extend(unpacked.collect::<Result<Vec<_>, _>>()?);
-    }
-    Ok(tiles)
 }
 
 /// The smaller of the tile codec's result and zstd's: surroundings that repeat themselves to the bit, as rendered tiles
