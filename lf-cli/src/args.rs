@@ -170,6 +170,10 @@ pub(crate) struct ValidateArgs {
 pub(crate) struct CropArgs {
     #[command(flatten)]
     pub(crate) input: FileArgs,
+    /// Keep only what rays from this cube ask for: its centre and edge length in metres, world space, as x,y,z,size [default: the
+    /// whole cell]
+    #[arg(long = "box", value_name = "X,Y,Z,SIZE", allow_hyphen_values = true)]
+    pub(crate) cube: Option<CellArg>,
     /// The file to write
     #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,

@@ -147,6 +147,13 @@ fn a_crop_is_smaller_and_reflects_the_same() {
         fs::read(out).unwrap()
     };
     assert!(picture(&file, "a.png") == picture(&cropped, "b.png"));
+    // A reflector that stays in a quarter of the edge needs less still, and no camera at the rim.
+    let part = path(&folder, "part.lfslab");
+    succeeds(&["crop", &file, "--box", "0.1,1.3,0,0.25", "--out", &part]);
+    assert!(len(&part) < len(&cropped));
+    assert!(succeeds(&["validate", &part]).contains("valid"));
+    assert!(succeeds(&["info", &part]).contains("coverage: rays from the box"));
+    fails(&["crop", &file, "--box", "9,9,9,0.1", "--out", &part], "--box");
     // Cropping what is cropped changes nothing.
     let again = path(&folder, "again.lfslab");
     succeeds(&["crop", &cropped, "--out", &again]);

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use glam::Vec3;
 use lf_format::{CameraPlace, SlabTiling};
 use lf_math::{Coverage, Slab};
 use rayon::prelude::*;
@@ -20,9 +21,19 @@ impl PackedLightField {
     /// # Errors
     /// If the volume would be too large.
     pub fn cropped(&self) -> Result<Self, PackError> {
+        let half_extent = self.geometry().cell().half_extent();
+        self.cropped_to([-half_extent, half_extent])
+    }
+
+    /// As [`Self::cropped`], for rays from a box given by its least and greatest corner, cell space, metres: where a reflector stays
+    /// in part of the cell. Cameras that none of these rays asks for are left out altogether.
+    ///
+    /// # Errors
+    /// As [`Self::cropped`].
+    pub fn cropped_to(&self, corners: [Vec3; 2]) -> Result<Self, PackError> {
         let slabs = self.geometry().slabs().iter().zip(self.tilings());
         let needed = slabs.map(|(slab, tiling)| {
-            let needed = Coverage::of_cell(slab, self.geometry().cell()).intersection(tiling.coverage());
+            let needed = Coverage::of_box(slab, corners).intersection(tiling.coverage());
             if needed.keeps_any() { needed } else { tiling.coverage().clone() }
         });
         self.recut(needed.collect())

@@ -12,6 +12,8 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use glam::Vec3;
+
 use crate::error::GeometryError;
 use crate::{Cell, SampledAxis, Slab, Windows};
 
@@ -40,7 +42,14 @@ impl Coverage {
     /// dominant face is the slab's and whose origin lies in `cell`, rounding in `f32` included. Windows may be empty.
     #[must_use]
     pub fn of_cell(slab: &Slab, cell: &Cell) -> Self {
-        let [columns, rows] = [0, 1].map(|i| Shadow::new(slab, cell, i).windows());
+        Self::of_box(slab, [-cell.half_extent(), cell.half_extent()])
+    }
+
+    /// As [`Self::of_cell`], for rays whose origin lies in a box given by its least and greatest corner, cell space: where a
+    /// reflector stays in part of the cell.
+    #[must_use]
+    pub fn of_box(slab: &Slab, corners: [Vec3; 2]) -> Self {
+        let [columns, rows] = [0, 1].map(|i| Shadow::new(slab, corners, i).windows());
         Self { columns, rows, kept: Vec::new() }
     }
 
@@ -197,20 +206,24 @@ struct Shadow {
     disparity: f64,
     /// Distance along the face from a point of the cell to the camera plane: least and greatest. Negative behind it.
     run: [f64; 2],
-    half_extent: f64,
+    /// The least and the greatest coordinate of the box along the axis.
+    extent: [f64; 2],
     /// Bounds on the rounding error of [`Slab::index_ray`] and [`Slab::taps`], in cameras and in texels.
     slack: [f64; 2],
 }
 
 impl Shadow {
-    fn new(slab: &Slab, cell: &Cell, i: usize) -> Self {
-        let (face, half) = (slab.face(), cell.half_extent().as_dvec3());
+    fn new(slab: &Slab, corners: [Vec3; 2], i: usize) -> Self {
+        let face = slab.face();
         let (cameras, slopes) = (slab.st()[i], slab.uv()[i]);
-        let plane = f64::from(face.sign() * slab.plane());
-        let (depth, half_extent) = (half[face.axis()], half[face.tangents()[i]]);
+        let sign = f64::from(face.sign());
+        let along = |axis: usize| corners.map(|corner| f64::from(corner[axis]));
+        let (extent, depths) = (along(face.tangents()[i]), along(face.axis()));
+        let runs = depths.map(|depth| sign * (f64::from(slab.plane()) - depth));
         let disparity = f64::from(slab.disparity()[i]);
+        let reach = |ends: [f64; 2]| ends[0].abs().max(ends[1].abs());
         let ends = |axis: &SampledAxis| f64::from(axis.first().abs()) + f64::from(axis.last().abs());
-        let positions = half_extent + plane.abs() + depth + ends(&cameras);
+        let positions = reach(extent) + f64::from(slab.plane().abs()) + reach(depths) + ends(&cameras);
         let texels = (1.0 + ends(&slopes)) / f64::from(slopes.step()) + f64::from(slopes.count());
         let slack = [
             positions / f64::from(cameras.step()) + f64::from(cameras.count()),
@@ -220,8 +233,8 @@ impl Shadow {
             cameras,
             slopes,
             disparity,
-            run: [plane - depth, plane + depth],
-            half_extent,
+            run: [runs[0].min(runs[1]), runs[0].max(runs[1])],
+            extent,
             slack: slack.map(|sum| 8.0 * UNIT_ROUNDOFF * sum),
         }
     }
@@ -251,7 +264,7 @@ impl Shadow {
     /// Least and greatest slope of the rays from the cell that cross the plane between `low` and `high`: all slopes w
     /// from −1 to 1 for which a run r and a point x of the cell exist with x + r·w between the two.
     fn slopes_between(&self, low: f64, high: f64) -> Option<[f64; 2]> {
-        let reach = [low - self.half_extent, high + self.half_extent];
+        let reach = [low - self.extent[1], high - self.extent[0]];
         let up = slopes_from_zero(self.run, reach);
         let down = slopes_from_zero([-self.run[1], -self.run[0]], reach).map(|[least, most]| [-most, -least]);
         match (up, down) {

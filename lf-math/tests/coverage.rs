@@ -146,6 +146,34 @@ proptest! {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: 20_000, max_global_rejects: 100_000, ..ProptestConfig::default() })]
+
+    /// A reflector that stays in a part of the cell asks for less, and for nothing that is not there.
+    #[test]
+    fn rays_from_a_box_find_all_they_use(
+        (cell, slab) in any_slab(), corner in prop::array::uniform3(-1.0f32..1.0), size in prop::array::uniform3(0.0f32..1.0),
+        at in prop::array::uniform3(-0.5f32..1.5), slopes in prop::array::uniform2(-1.5f32..1.5)
+    ) {
+        let half = cell.half_extent();
+        let least = half * Vec3::from(corner);
+        let most = (least + half * Vec3::from(size)).min(half);
+        let coverage = Coverage::of_box(&slab, [least, most]);
+        prop_assert_eq!(&coverage.intersection(&Coverage::of_cell(&slab, &cell)), &coverage);
+        let origin = (least + (most - least) * Vec3::from(at).clamp(Vec3::ZERO, Vec3::ONE)).clamp(least, most);
+        let ray = Ray { origin, ..ray_in(&cell, &slab, at, slopes, 1.0) };
+        prop_assume!(Face::dominant(ray.direction) == Some(slab.face()));
+        for tap in slab.taps(&slab.index_ray(&ray)).into_iter().filter(|tap| tap.weight > 0.0) {
+            let window = coverage.window(tap.camera);
+            prop_assert!(window.is_some(), "{tap:?}");
+            for (range, place) in window.unwrap().into_iter().zip(tap.uv.to_array()) {
+                let touched = [place.floor() as u32, place.ceil() as u32];
+                prop_assert!(touched.iter().all(|texel| range.contains(texel)), "{tap:?} {range:?}");
+            }
+        }
+    }
+}
+
+proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     /// No window is wider than what sampling finds, but for a texel at either end: there is nothing to spare.
