@@ -115,18 +115,21 @@ impl Coverage {
 
     /// The window along u of each column of cameras.
     #[must_use]
+    #[inline]
     pub fn columns(&self) -> &Windows {
         &self.columns
     }
 
     /// The window along v of each row of cameras.
     #[must_use]
+    #[inline]
     pub fn rows(&self) -> &Windows {
         &self.rows
     }
 
     /// Texels of a whole image along u and v.
     #[must_use]
+    #[inline]
     pub fn resolution(&self) -> [u32; 2] {
         [self.columns.texels(), self.rows.texels()]
     }

@@ -154,6 +154,7 @@ impl Starts {
     }
 
     /// The place of the image of a camera (s, t), whose window has a height, in a grid of so many columns.
+    #[inline]
     fn get(&self, [s, t]: [u32; 2], height: usize, across: u32) -> Option<usize> {
         match self {
             Self::Regular { columns, rows } => {

@@ -33,24 +33,28 @@ impl Windows {
 
     /// Number of cameras along the axis.
     #[must_use]
+    #[inline]
     pub fn cameras(&self) -> u32 {
         self.cameras
     }
 
     /// Texels of a whole image along the axis.
     #[must_use]
+    #[inline]
     pub fn texels(&self) -> u32 {
         self.texels
     }
 
     /// Whether all of every image is kept.
     #[must_use]
+    #[inline]
     pub fn is_whole(&self) -> bool {
         self.each.is_empty()
     }
 
     /// The window of a camera, texels; `None` if there is no such camera. An empty one is 0..0.
     #[must_use]
+    #[inline]
     pub fn get(&self, camera: u32) -> Option<Range<u32>> {
         if self.is_whole() {
             return (camera < self.cameras).then_some(0..self.texels);
