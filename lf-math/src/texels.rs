@@ -189,6 +189,8 @@ impl<'a, T> ImageWindow<'a, T> {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec;
+
     use super::*;
     use crate::{Face, SampledAxis};
 
