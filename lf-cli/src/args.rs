@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 use lf_compress::PackOptions;
 use lf_compress::bc1::Quality;
 use lf_compress::tile::RdoOptions;
-use lf_format::TexelEncoding;
+use lf_format::{Limits, TexelEncoding};
 use lf_math::PlanePlacement;
 
 use crate::exchange_args::{ExportArgs, ImportArgs};
@@ -251,6 +251,11 @@ impl FileArgs {
     /// A file to read with the usual limit.
     pub(crate) fn new(file: &Path) -> Self {
         Self { file: file.to_owned(), max_memory: MAX_MEMORY_MIB }
+    }
+
+    /// What reading the file may cost.
+    pub(crate) fn limits(&self) -> Limits {
+        Limits { memory_bytes: self.max_memory.saturating_mul(1 << 20) }
     }
 }
 

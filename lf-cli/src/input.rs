@@ -4,7 +4,7 @@ use std::fs::File;
 
 use anyhow::{Context, Result};
 use lf_compress::PackedLightField;
-use lf_format::{FileReader, Limits};
+use lf_format::FileReader;
 
 use crate::args::FileArgs;
 
@@ -14,8 +14,7 @@ pub(crate) type Input = FileReader<File>;
 /// Opens a file and validates its structure.
 pub(crate) fn open(args: &FileArgs) -> Result<Input> {
     let file = File::open(&args.file).with_context(|| format!("cannot read {}", args.file.display()))?;
-    let limits = Limits { memory_bytes: args.max_memory.saturating_mul(1 << 20) };
-    FileReader::open(file, &limits).with_context(|| args.file.display().to_string())
+    FileReader::open(file, &args.limits()).with_context(|| args.file.display().to_string())
 }
 
 /// Reads and unpacks a light field.

@@ -4,7 +4,7 @@ use std::fs::File;
 
 use anyhow::{Context, Result, bail};
 use lf_compress::{Finding, Severity, validate};
-use lf_format::{Limits, Structure};
+use lf_format::Structure;
 use serde_json::{Value, json};
 
 use crate::args::{Format, ValidateArgs};
@@ -13,10 +13,9 @@ use crate::output::print;
 pub(crate) fn run(args: &ValidateArgs) -> Result<()> {
     let path = args.input.file.display();
     let context = || format!("cannot read {path}");
-    let limits = Limits { memory_bytes: args.input.max_memory.saturating_mul(1 << 20) };
     let file = File::open(&args.input.file).with_context(context)?;
     let mut findings = Vec::new();
-    let structure = validate(file, &limits, |found| findings.push(found)).with_context(context)?;
+    let structure = validate(file, &args.input.limits(), |found| findings.push(found)).with_context(context)?;
     let valid = findings.iter().all(|found| found.severity != Severity::Error);
     match args.format {
         Format::Json => print(&format!("{:#}", to_json(&path.to_string(), valid, structure.as_ref(), &findings)))?,

@@ -145,15 +145,14 @@ impl PackedLightField {
 
     fn decode_slab<T: Texel>(&self, slab: usize, decode: Decode<T>) -> Result<SlabTexels<T>, PackError> {
         let tiling = &self.tilings[slab];
-        let [across, down] = tiling.tiles();
+        let [across, _] = tiling.tiles();
         let stored: Vec<(u32, &Vec<u8>)> = tiling.stored_tiles().zip(&self.tiles[slab]).collect();
         let mut texels = Vec::new();
-        for row in 0..down {
-            let in_row = stored.iter().filter(|(tile, _)| tile / across == row).collect::<Vec<_>>();
+        for row in stored.chunk_by(|(a, _), (b, _)| a / across == b / across) {
             let decode =
-                |&&(tile, raw): &&(u32, &Vec<u8>)| Ok((tile, decode(raw, tiling.encoding(), tiling.tile_size(tile))?));
-            let pictures = in_row.par_iter().map(decode).collect::<Result<Vec<(u32, Image<T>)>, PackError>>()?;
-            picture::append_row(&mut texels, tiling, row, &pictures);
+                |&(tile, raw): &(u32, &Vec<u8>)| Ok((tile, decode(raw, tiling.encoding(), tiling.tile_size(tile))?));
+            let pictures = row.par_iter().map(decode).collect::<Result<Vec<(u32, Image<T>)>, PackError>>()?;
+            picture::append_row(&mut texels, tiling, &pictures);
         }
         Ok(SlabTexels::covering(tiling.coverage().clone(), texels)?)
     }

@@ -55,10 +55,10 @@ fn padded_row<T: Texel>(image: &ImageWindow<'_, T>, u: Range<u32>, v: u32) -> im
     u.map(move |u| image.texels[row + (u.clamp(first, last) - first) as usize].opaque())
 }
 
-/// Appends the windows of all cameras in a row of tiles, camera after camera.
-pub(crate) fn append_row<T: Texel>(out: &mut Vec<T>, tiling: &SlabTiling, row: u32, pictures: &[(u32, Image<T>)]) {
-    let [across, _] = tiling.tiles();
-    let [_, rows] = tiling.cameras_of(row * across);
+/// Appends the windows of all cameras in a row of tiles, given by its pictures, camera after camera.
+pub(crate) fn append_row<T: Texel>(out: &mut Vec<T>, tiling: &SlabTiling, pictures: &[(u32, Image<T>)]) {
+    let Some(&(first, _)) = pictures.first() else { return };
+    let [_, rows] = tiling.cameras_of(first);
     for camera in tiling.coverage().windowed(0..tiling.cameras()[0], rows) {
         let Some(CameraPlace { tile, corner, window: [u, v] }) = tiling.place(camera) else { continue };
         let Ok(found) = pictures.binary_search_by_key(&tile, |(tile, _)| *tile) else { continue };

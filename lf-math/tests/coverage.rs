@@ -123,6 +123,19 @@ fn ray_in(cell: &Cell, slab: &Slab, at: [f32; 3], slopes: [f32; 2], length: f32)
     Ray { origin, direction: face.vector(Vec2::from(slopes.map(edge)), face.sign()) * length }
 }
 
+/// Every texel that a ray's look-up uses with a weight greater than 0 is kept.
+fn finds_all_it_uses(slab: &Slab, coverage: &Coverage, ray: &Ray) -> Result<(), TestCaseError> {
+    for tap in slab.taps(&slab.index_ray(ray)).into_iter().filter(|tap| tap.weight > 0.0) {
+        let window = coverage.window(tap.camera);
+        prop_assert!(window.is_some(), "{tap:?}");
+        for (range, place) in window.unwrap().into_iter().zip(tap.uv.to_array()) {
+            let touched = [place.floor() as u32, place.ceil() as u32];
+            prop_assert!(touched.iter().all(|texel| range.contains(texel)), "{tap:?} {range:?}");
+        }
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, max_global_rejects: 100_000, ..ProptestConfig::default() })]
 
@@ -134,14 +147,7 @@ proptest! {
         let ray = ray_in(&cell, &slab, at, slopes, length);
         prop_assume!(Face::dominant(ray.direction) == Some(slab.face()));
         let coverage = Coverage::of_cell(&slab, &cell);
-        for tap in slab.taps(&slab.index_ray(&ray)).into_iter().filter(|tap| tap.weight > 0.0) {
-            let window = coverage.window(tap.camera);
-            prop_assert!(window.is_some(), "{tap:?}");
-            for (range, place) in window.unwrap().into_iter().zip(tap.uv.to_array()) {
-                let touched = [place.floor() as u32, place.ceil() as u32];
-                prop_assert!(touched.iter().all(|texel| range.contains(texel)), "{tap:?} {range:?}");
-            }
-        }
+        finds_all_it_uses(&slab, &coverage, &ray)?;
     }
 }
 
@@ -162,14 +168,7 @@ proptest! {
         let origin = (least + (most - least) * Vec3::from(at).clamp(Vec3::ZERO, Vec3::ONE)).clamp(least, most);
         let ray = Ray { origin, ..ray_in(&cell, &slab, at, slopes, 1.0) };
         prop_assume!(Face::dominant(ray.direction) == Some(slab.face()));
-        for tap in slab.taps(&slab.index_ray(&ray)).into_iter().filter(|tap| tap.weight > 0.0) {
-            let window = coverage.window(tap.camera);
-            prop_assert!(window.is_some(), "{tap:?}");
-            for (range, place) in window.unwrap().into_iter().zip(tap.uv.to_array()) {
-                let touched = [place.floor() as u32, place.ceil() as u32];
-                prop_assert!(touched.iter().all(|texel| range.contains(texel)), "{tap:?} {range:?}");
-            }
-        }
+        finds_all_it_uses(&slab, &coverage, &ray)?;
     }
 }
 
