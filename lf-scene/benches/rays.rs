@@ -6,7 +6,7 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Vec2, Vec3};
 use lf_math::{TriangleMesh, reflect};
-use lf_scene::{Light, Lighting, Material, Scene, SceneBuilder, Tracer, Vertex, reflectors};
+use lf_scene::{Environment, Light, Lighting, Material, Scene, SceneBuilder, Tracer, Vertex, reflectors};
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::builder::build_cwbvh_from_tris;
 use obvhs::ray::{Ray as BareRay, RayHit};
@@ -32,8 +32,10 @@ fn scene(mesh: &TriangleMesh) -> Scene {
         };
         builder.triangle(triangle.map(vertex), grey);
     }
-    let lights = vec![Light::Point { position: Vec3::new(1.0, 2.0, 0.5), intensity: Vec3::splat(9.0) }];
-    builder.build("shell", Lighting { lights, ambient: Vec3::splat(0.2), sky: Vec3::ZERO }).expect("a scene")
+    let lights = vec![Light::Point { position: Vec3::new(1.0, 2.0, 0.5), intensity: Vec3::splat(28.0) }];
+    builder
+        .build("shell", Lighting { lights, ambient: Vec3::splat(0.2), environment: Environment::BLACK })
+        .expect("a scene")
 }
 
 /// Origin and direction of rays mirrored by a sphere, pixel by pixel.

@@ -179,7 +179,7 @@ impl Depths {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Lighting, Material, SceneBuilder};
+    use crate::{Environment, Lighting, Material, SceneBuilder};
     use glam::DVec3;
     use lf_math::PlanePlacement;
 
@@ -197,7 +197,7 @@ mod tests {
             let white = builder.material(Material::glowing(Vec3::ONE));
             builder.cuboid(Vec3::new(0.8, -0.1, -3.0), Vec3::new(0.9, 0.1, 3.0), white);
         }
-        let lighting = Lighting { lights: vec![], ambient: Vec3::ZERO, sky: Vec3::ZERO };
+        let lighting = Lighting::from_environment(Environment::BLACK);
         Tracer::new(builder.build("box", lighting).unwrap())
     }
 

@@ -73,7 +73,7 @@ fn spiral(count: u32) -> impl Iterator<Item = Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Lighting, Material, SceneBuilder, museum};
+    use crate::{Environment, Lighting, Material, SceneBuilder, museum};
     use glam::Vec2;
 
     #[test]
@@ -90,7 +90,7 @@ mod tests {
         let grey = builder.material(Material::diffuse(Vec3::splat(0.5)));
         builder.parallelogram(Vec3::ZERO, Vec3::Z * 10.0, Vec3::X * 10.0, Vec2::ONE, grey);
         builder.cuboid(Vec3::new(1.0, 0.0, 1.0), Vec3::new(2.0, 3.0, 2.0), grey);
-        let lighting = Lighting { lights: vec![], ambient: Vec3::ONE, sky: Vec3::ONE };
+        let lighting = Lighting::from_environment(Environment::BLACK);
         let tracer = Tracer::new(builder.build("open", lighting).unwrap());
         let found = find_free_space(&tracer, Vec3::new(5.0, 1.5, 5.0), None).expect("room");
         assert!(found.center.y + found.radius <= 3.0 && found.radius > 0.5, "{found:?}");

@@ -12,6 +12,7 @@
 
 mod bvh;
 mod capture;
+mod environment;
 mod error;
 mod free_space;
 mod import;
@@ -24,11 +25,12 @@ mod scene;
 mod tracer;
 
 pub use capture::{Capture, capture_cube, capture_slabs};
+pub use environment::{Environment, EnvironmentMap};
 pub use error::SceneError;
 pub use free_space::{FreeSpace, find_free_space, is_free};
 pub use import::{Imported, import_gltf, import_obj};
-pub use light::{Light, Lighting};
-pub use material::{Material, Pattern, Surface, Texture};
+pub use light::{Illuminant, Light, Lighting};
+pub use material::{ColorEncoding, Material, Pattern, Scattering, Surface, Texture};
 pub use scene::{Scene, SceneBuilder, Vertex};
 pub use tracer::{Traced, Tracer};
 

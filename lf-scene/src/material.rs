@@ -1,24 +1,55 @@
-//! What surfaces look like: a base colour from a constant, a picture or a procedural pattern.
+//! What surfaces look like: base colour and emission from constants, pictures or patterns, and how light is scattered.
 
 use std::sync::{Arc, LazyLock};
 
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3, Vec4};
 use lf_math::{Image, linear_from_srgb};
 
 /// The linear value of each 8-bit sRGB value.
 static LINEAR: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|byte| linear_from_srgb(byte as f32 / 255.0)));
 
-/// A surface: diffuse, or glowing by itself.
+/// What a surface looks like.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// Base colour.
-    pub surface: Surface,
-    /// Emitted radiance, linear RGB; added to what is reflected.
-    pub emission: Vec3,
+    /// Base colour: the albedo of diffuse surfaces, the colour of metals, mirrors and glass.
+    pub base: Surface,
+    /// How light is scattered, on both sides.
+    pub scattering: Scattering,
+    /// Emitted radiance, linear RGB, in W/(m²·sr).
+    pub emission: Surface,
+    /// Whether the back emits too.
+    pub double_sided: bool,
+    /// Rays pass where the base colour's alpha is below this.
+    pub alpha_cutoff: Option<f32>,
 }
 
-/// The base colour of a material over texture coordinates.
+/// How a surface scatters light. Roughness is perceptual: GGX's α is its square.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Scattering {
+    /// Lambert's law.
+    Diffuse,
+    /// glTF 2.0's metallic-roughness model (its Appendix B): GGX over Lambert.
+    MetallicRoughness {
+        /// 0 is a dielectric, 1 a metal.
+        metallic: f32,
+        /// 0 is smooth, 1 rough.
+        roughness: f32,
+        /// Factors of both over texture coordinates: roughness in green, metallic in blue, linear.
+        texture: Option<Arc<Texture>>,
+    },
+    /// Reflects everything, times the base colour.
+    Mirror,
+    /// Clear and smooth: reflects and lets through by Fresnel's equations; what passes is multiplied by the base colour.
+    Glass {
+        /// Index of refraction, more than 1.
+        ior: f32,
+        /// A pane without thickness, which does not bend rays; else the surface of a solid that the normal points out of.
+        thin: bool,
+    },
+}
+
+/// A colour over texture coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Surface {
     /// One colour, linear RGB.
@@ -32,8 +63,19 @@ pub enum Surface {
 /// A picture that repeats over texture coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
-    /// 8-bit sRGB texels; the first row is v = 0, as in glTF.
-    pub image: Image<[u8; 3]>,
+    /// RGBA texels; the first row is v = 0, as in glTF. Alpha is linear.
+    pub image: Image<[u8; 4]>,
+    /// How the colour channels are stored.
+    pub encoding: ColorEncoding,
+}
+
+/// How 8-bit colour channels stand for amounts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColorEncoding {
+    /// By sRGB's transfer function.
+    Srgb,
+    /// In proportion.
+    Linear,
 }
 
 /// The museum's patterns, over texture coordinates.
@@ -50,22 +92,44 @@ pub enum Pattern {
 }
 
 impl Material {
+    /// A diffuse material.
+    #[must_use]
+    pub fn of(base: Surface) -> Self {
+        let emission = Surface::Uniform(Vec3::ZERO);
+        Self { base, scattering: Scattering::Diffuse, emission, double_sided: false, alpha_cutoff: None }
+    }
+
     /// A diffuse material of one colour.
     #[must_use]
     pub fn diffuse(color: Vec3) -> Self {
-        Self { surface: Surface::Uniform(color), emission: Vec3::ZERO }
+        Self::of(Surface::Uniform(color))
     }
 
     /// A diffuse material with a pattern.
     #[must_use]
     pub fn patterned(pattern: Pattern) -> Self {
-        Self { surface: Surface::Procedural(pattern), emission: Vec3::ZERO }
+        Self::of(Surface::Procedural(pattern))
     }
 
-    /// A black material that glows.
+    /// A black material that glows on both sides.
     #[must_use]
     pub fn glowing(radiance: Vec3) -> Self {
-        Self { surface: Surface::Uniform(Vec3::ZERO), emission: radiance }
+        Self { emission: Surface::Uniform(radiance), double_sided: true, ..Self::diffuse(Vec3::ZERO) }
+    }
+
+    /// A perfect mirror of one colour.
+    #[must_use]
+    pub fn mirror(color: Vec3) -> Self {
+        Self { scattering: Scattering::Mirror, ..Self::diffuse(color) }
+    }
+
+    /// Memory of the textures, bytes.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        let scattering = match &self.scattering {
+            Scattering::MetallicRoughness { texture: Some(texture), .. } => texture.memory_bytes(),
+            _ => 0,
+        };
+        self.base.memory_bytes() + self.emission.memory_bytes() + scattering
     }
 }
 
@@ -73,7 +137,7 @@ impl Surface {
     /// Memory of the texture, bytes; 0 without one.
     pub(crate) fn memory_bytes(&self) -> usize {
         match self {
-            Self::Textured(texture, _) => size_of_val(texture.image.texels()),
+            Self::Textured(texture, _) => texture.memory_bytes(),
             Self::Uniform(_) | Self::Procedural(_) => 0,
         }
     }
@@ -83,16 +147,30 @@ impl Surface {
     pub fn color(&self, uv: Vec2) -> Vec3 {
         match self {
             Self::Uniform(color) => *color,
-            Self::Textured(texture, factor) => texture.sample(uv) * *factor,
+            Self::Textured(texture, factor) => texture.sample(uv).truncate() * *factor,
             Self::Procedural(pattern) => pattern.color(uv),
+        }
+    }
+
+    /// Alpha at a texture coordinate; 1 without a picture.
+    #[must_use]
+    pub fn alpha(&self, uv: Vec2) -> f32 {
+        match self {
+            Self::Textured(texture, _) => texture.sample(uv).w,
+            Self::Uniform(_) | Self::Procedural(_) => 1.0,
         }
     }
 }
 
 impl Texture {
-    /// Bilinear sample, repeating in both directions. Coordinates that are not finite give the first texel.
+    /// Memory of the texels, bytes.
+    fn memory_bytes(&self) -> usize {
+        size_of_val(self.image.texels())
+    }
+
+    /// Bilinear sample of linear RGB and alpha, repeating in both directions. Coordinates that are not finite give the first texel.
     #[must_use]
-    pub fn sample(&self, uv: Vec2) -> Vec3 {
+    pub fn sample(&self, uv: Vec2) -> Vec4 {
         let size = UVec2::new(self.image.width(), self.image.height());
         let wrapped = uv - uv.floor();
         let position = if wrapped.is_finite() { wrapped * size.as_vec2() - 0.5 } else { Vec2::ZERO };
@@ -100,9 +178,18 @@ impl Texture {
         let fraction = position - base;
         let low = UVec2::new(wrap(base.x, size.x), wrap(base.y, size.y));
         let high = (low + 1) % size;
-        let texel = |x: u32, y: u32| Vec3::from(self.image.get(x, y).map(|byte| LINEAR[usize::from(byte)]));
+        let texel = |x: u32, y: u32| self.linear(self.image.get(x, y));
         let row = |y: u32| texel(low.x, y).lerp(texel(high.x, y), fraction.x);
         row(low.y).lerp(row(high.y), fraction.y)
+    }
+
+    fn linear(&self, [r, g, b, a]: [u8; 4]) -> Vec4 {
+        let unit = |byte: u8| f32::from(byte) / 255.0;
+        let color = match self.encoding {
+            ColorEncoding::Srgb => [r, g, b].map(|byte| LINEAR[usize::from(byte)]),
+            ColorEncoding::Linear => [r, g, b].map(unit),
+        };
+        Vec3::from(color).extend(unit(a))
     }
 }
 
@@ -137,13 +224,13 @@ mod tests {
 
     #[test]
     fn textures_repeat_and_interpolate() {
-        let texels = vec![[0; 3], [255; 3], [255; 3], [0; 3]];
-        let texture = Texture { image: Image::new(2, 2, texels).unwrap() };
-        assert_eq!(texture.sample(Vec2::new(0.25, 0.25)), Vec3::ZERO);
-        assert_eq!(texture.sample(Vec2::new(0.75, 0.25)), Vec3::ONE);
-        assert_eq!(texture.sample(Vec2::new(0.5, 0.25)), Vec3::splat(0.5));
-        assert_eq!(texture.sample(Vec2::new(-0.75, 5.25)), Vec3::ZERO);
-        assert_eq!(texture.sample(Vec2::new(0.0, 0.25)), Vec3::splat(0.5));
+        let texels = vec![[0; 4], [255; 4], [255; 4], [0; 4]];
+        let texture = Texture { image: Image::new(2, 2, texels).unwrap(), encoding: ColorEncoding::Srgb };
+        assert_eq!(texture.sample(Vec2::new(0.25, 0.25)), Vec4::ZERO);
+        assert_eq!(texture.sample(Vec2::new(0.75, 0.25)), Vec4::ONE);
+        assert_eq!(texture.sample(Vec2::new(0.5, 0.25)), Vec4::splat(0.5));
+        assert_eq!(texture.sample(Vec2::new(-0.75, 5.25)), Vec4::ZERO);
+        assert_eq!(texture.sample(Vec2::new(0.0, 0.25)), Vec4::splat(0.5));
         assert!(texture.sample(Vec2::NAN).is_finite());
     }
 

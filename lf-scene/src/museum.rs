@@ -3,11 +3,12 @@
 //! Coloured columns stand between the cell and framed pictures on the walls, so that a moving eye sees the columns
 //! cover other parts of the pictures. The floor is a checkerboard; some small objects stand close to the cell.
 
-use std::f32::consts::TAU;
+use std::f32::consts::{PI, TAU};
 
 use glam::{DVec3, Vec2, Vec3};
 use lf_math::Cell;
 
+use crate::environment::Environment;
 use crate::light::{Light, Lighting};
 use crate::material::{Material, Pattern};
 use crate::scene::{Scene, SceneBuilder};
@@ -27,11 +28,12 @@ pub fn scene() -> Scene {
         pictures(&mut builder, wall);
     }
     near_objects(&mut builder);
-    let lamp = |x: f32, z: f32| Light::Point { position: Vec3::new(x, 3.6, z), intensity: Vec3::new(4.2, 4.0, 3.6) };
+    let lamp =
+        |x: f32, z: f32| Light::Point { position: Vec3::new(x, 3.6, z), intensity: PI * Vec3::new(4.2, 4.0, 3.6) };
     let lighting = Lighting {
         lights: vec![lamp(-1.6, 1.2), lamp(2.2, -2.0)],
         ambient: Vec3::new(0.34, 0.35, 0.38),
-        sky: Vec3::ZERO,
+        environment: Environment::BLACK,
     };
     builder.build("museum", lighting).unwrap_or_else(|_| unreachable!("the museum is made of finite triangles"))
 }

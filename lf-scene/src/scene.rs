@@ -58,10 +58,16 @@ impl Scene {
         &self.materials[self.triangles[triangle].1 as usize]
     }
 
+    /// All materials, by number.
+    #[must_use]
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
     /// Memory of triangles and textures, bytes; a texture that several materials share is counted for each.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        let textures: usize = self.materials.iter().map(|material| material.surface.memory_bytes()).sum();
+        let textures: usize = self.materials.iter().map(Material::memory_bytes).sum();
         size_of_val(self.triangles.as_slice()) + textures
     }
 
@@ -69,6 +75,12 @@ impl Scene {
     #[must_use]
     pub fn lighting(&self) -> &Lighting {
         &self.lighting
+    }
+
+    /// The same things under another light.
+    #[must_use]
+    pub fn with_lighting(self, lighting: Lighting) -> Self {
+        Self { lighting, ..self }
     }
 
     /// The smallest box around all vertices: (min, max).
@@ -192,6 +204,7 @@ impl SceneBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::environment::Environment;
 
     #[test]
     fn cuboids_face_outwards() {
@@ -207,7 +220,7 @@ mod tests {
 
     #[test]
     fn bad_scenes_are_refused() {
-        let lighting = || Lighting { lights: vec![], ambient: Vec3::ONE, sky: Vec3::ONE };
+        let lighting = || Lighting::from_environment(Environment::BLACK);
         assert!(SceneBuilder::default().build("empty", lighting()).is_err());
         let mut builder = SceneBuilder::default();
         builder.parallelogram(Vec3::ZERO, Vec3::X, Vec3::Y, Vec2::ONE, 7);

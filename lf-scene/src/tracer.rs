@@ -1,8 +1,11 @@
 //! The ray tracer: nearest hit, direct light with hard shadows.
 
+use std::f32::consts::PI;
+
 use glam::{Vec2, Vec3};
 
 use crate::bvh::{Hit, TriangleBvh, interpolate};
+use crate::light::Illuminant;
 use crate::scene::Scene;
 
 /// What a ray met.
@@ -59,7 +62,7 @@ impl Tracer {
             Some(hit) => Traced { radiance: self.shade(&hit, origin, direction), distance: hit.t },
             None => {
                 let towards = lf_math::normalized(direction).unwrap_or(Vec3::ZERO);
-                Traced { radiance: self.scene.lighting().sky_towards(towards), distance: f32::INFINITY }
+                Traced { radiance: self.scene.lighting().environment.towards(towards), distance: f32::INFINITY }
             }
         }
     }
@@ -71,21 +74,23 @@ impl Tracer {
         let normal = smooth.map_or(geometric, |n| if n.dot(geometric) < 0.0 { -n } else { n });
         let uv = interpolate(corners.map(|v| v.uv.extend(0.0)), hit.shares);
         let material = self.scene.material(hit.triangle);
-        let base = material.surface.color(Vec2::new(uv.x, uv.y));
+        let base = material.base.color(Vec2::new(uv.x, uv.y));
         let point = origin + direction * hit.t;
-        material.emission + base * self.sent_back(point, geometric * self.offset, normal)
+        let front = hit.normal.dot(direction) < 0.0 || material.double_sided;
+        let emission = if front { material.emission.color(Vec2::new(uv.x, uv.y)) } else { Vec3::ZERO };
+        emission + base / PI * self.irradiance(point, geometric * self.offset, normal)
     }
 
-    /// Light that a white diffuse surface sends back: ambient, and what each visible light adds. Shadow rays start
+    /// Irradiance: ambient, and what each visible light adds. Shadow rays start
     /// `lift` above the point.
-    fn sent_back(&self, point: Vec3, lift: Vec3, normal: Vec3) -> Vec3 {
+    fn irradiance(&self, point: Vec3, lift: Vec3, normal: Vec3) -> Vec3 {
         let lighting = self.scene.lighting();
         let mut sum = lighting.ambient_on(normal);
         for light in &lighting.lights {
-            let Some((towards, distance, strength)) = light.seen_from(point) else { continue };
+            let Some(Illuminant { towards, distance, irradiance }) = light.at(point) else { continue };
             let cosine = normal.dot(towards);
             if cosine > 0.0 && !self.bvh.occluded(point + lift, towards, distance) {
-                sum += strength * cosine;
+                sum += irradiance * cosine;
             }
         }
         sum
@@ -95,7 +100,7 @@ impl Tracer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Light, Lighting, Material, SceneBuilder};
+    use crate::{Environment, Light, Lighting, Material, SceneBuilder};
 
     fn lit_floor(lights: Vec<Light>) -> Tracer {
         let mut builder = SceneBuilder::default();
@@ -103,13 +108,15 @@ mod tests {
         let corner = Vec3::new(-50.0, 0.0, -50.0);
         builder.parallelogram(corner, Vec3::Z * 100.0, Vec3::X * 100.0, Vec2::ONE, white);
         builder.cuboid(Vec3::new(4.0, 1.0, -1.0), Vec3::new(6.0, 2.0, 1.0), white);
-        let lighting = Lighting { lights, ambient: Vec3::ZERO, sky: Vec3::new(0.2, 0.4, 0.8) };
+        let lighting =
+            Lighting { lights, ambient: Vec3::ZERO, environment: Environment::Sky(Vec3::new(0.2, 0.4, 0.8)) };
         Tracer::new(builder.build("floor", lighting).unwrap())
     }
 
     #[test]
     fn point_light_follows_the_cosine_and_inverse_square_laws() {
-        let tracer = lit_floor(vec![Light::Point { position: Vec3::new(0.0, 3.0, 0.0), intensity: Vec3::splat(9.0) }]);
+        let tracer =
+            lit_floor(vec![Light::Point { position: Vec3::new(0.0, 3.0, 0.0), intensity: Vec3::splat(9.0 * PI) }]);
         for x in [0.0f32, 1.0, 2.5] {
             let traced = tracer.trace(Vec3::new(x, 0.5, 0.1), Vec3::new(0.0, -2.0, 0.0));
             let r2 = f64::from(x * x) + 9.0 + 0.01;
@@ -121,7 +128,7 @@ mod tests {
 
     #[test]
     fn a_box_casts_a_shadow_of_the_sun() {
-        let tracer = lit_floor(vec![Light::Sun { towards: Vec3::Y, strength: Vec3::ONE }]);
+        let tracer = lit_floor(vec![Light::Sun { towards: Vec3::Y, irradiance: Vec3::splat(PI) }]);
         let below = |x: f32| tracer.trace(Vec3::new(x, 0.5, 0.0), Vec3::NEG_Y).radiance.x;
         assert_eq!((below(3.9), below(5.0), below(6.1)), (1.0, 0.0, 1.0));
     }

@@ -15,8 +15,9 @@ use lf_math::{GeometryError, Image, normalized};
 
 use super::Imported;
 use crate::SceneError;
+use crate::environment::Environment;
 use crate::light::{Light, Lighting};
-use crate::material::{Material, Surface, Texture};
+use crate::material::{ColorEncoding, Material, Surface, Texture};
 use crate::scene::{SceneBuilder, Vertex};
 
 /// Reads a `.glb` or `.gltf` file.
@@ -163,23 +164,23 @@ impl Import {
     /// The file's lights; a sun if it names one; else a lamp at the camera. Ambient light fills in for indirect light.
     fn lighting(&mut self, sun: Option<Vec3>) -> Lighting {
         let mut lights = std::mem::take(&mut self.lights);
-        lights.extend(sun.map(|towards| Light::Sun { towards, strength: Vec3::new(1.6, 1.5, 1.3) }));
+        lights.extend(sun.map(|towards| Light::Sun { towards, irradiance: PI * Vec3::new(1.6, 1.5, 1.3) }));
         if lights.is_empty() {
             let (min, max) = self.builder.bounds();
             let position = self.camera.map_or(0.5 * (min + max), |(eye, _)| eye + Vec3::Y * 0.3);
             // Makes a white wall a quarter of the scene's diagonal away as bright as white can be shown.
             let reach = 0.25 * (max - min).length();
-            lights.push(Light::Point { position, intensity: Vec3::splat(reach * reach) });
+            lights.push(Light::Point { position, intensity: Vec3::splat(PI * reach * reach) });
         }
-        Lighting { lights, ambient: Vec3::splat(0.45), sky: Vec3::new(0.75, 0.85, 1.0) }
+        Lighting { lights, ambient: Vec3::splat(0.45), environment: Environment::Sky(Vec3::new(0.75, 0.85, 1.0)) }
     }
 }
 
 fn convert_light(light: &gltf::khr_lights_punctual::Light<'_>, position: Vec3, forward: Vec3) -> Option<Light> {
     // glTF gives candela and lux; 683 lm/W turns them into radiometric units, as Blender's exporter assumes.
-    let strength = Vec3::from(light.color()) * light.intensity() / (683.0 * PI);
+    let strength = Vec3::from(light.color()) * light.intensity() / 683.0;
     match light.kind() {
-        Kind::Directional => normalized(-forward).map(|towards| Light::Sun { towards, strength }),
+        Kind::Directional => normalized(-forward).map(|towards| Light::Sun { towards, irradiance: strength }),
         Kind::Point | Kind::Spot { .. } => Some(Light::Point { position, intensity: strength }),
     }
 }
@@ -189,9 +190,9 @@ fn convert_material(material: &gltf::Material<'_>, textures: &[Option<Arc<Textur
     let [r, g, b, _] = pbr.base_color_factor();
     let factor = Vec3::new(r, g, b);
     let picture = pbr.base_color_texture().and_then(|info| textures.get(info.texture().source().index())?.as_ref());
-    let surface = picture.map_or(Surface::Uniform(factor), |texture| Surface::Textured(Arc::clone(texture), factor));
+    let base = picture.map_or(Surface::Uniform(factor), |texture| Surface::Textured(Arc::clone(texture), factor));
     let emission = Vec3::from(material.emissive_factor()) * material.emissive_strength().unwrap_or(1.0);
-    Material { surface, emission }
+    Material { emission: Surface::Uniform(emission), double_sided: material.double_sided(), ..Material::of(base) }
 }
 
 /// A decoded picture in colour; of 16-bit values the high byte counts, grey stands for all channels.
@@ -215,8 +216,12 @@ fn texture(picture: &Picture) -> Result<Option<Arc<Texture>>, GeometryError> {
         let c = if channels < 3 { 0 } else { c };
         pixel[c * bytes + high]
     };
-    let texels = picture.pixels.chunks_exact(channels * bytes).map(|p| [channel(p, 0), channel(p, 1), channel(p, 2)]);
-    Ok(Some(Arc::new(Texture { image: Image::new(picture.width, picture.height, texels.collect())? })))
+    let texels =
+        picture.pixels.chunks_exact(channels * bytes).map(|p| [channel(p, 0), channel(p, 1), channel(p, 2), 255]);
+    Ok(Some(Arc::new(Texture {
+        image: Image::new(picture.width, picture.height, texels.collect())?,
+        encoding: ColorEncoding::Srgb,
+    })))
 }
 
 /// Refuses attributes that name no accessor.
