@@ -28,7 +28,26 @@ impl Pinhole {
         let distance = (target - eye).length();
         let forward = normalized(target - eye)
             .ok_or(GeometryError::NotPositive { what: "distance from eye to target", value: distance })?;
-        let right = normalized(forward.cross(Vec3::Y)).unwrap_or(Vec3::Z * -forward.y.signum());
+        Self::looking(eye, forward, Vec3::Y, fov_y, width, height)
+    }
+
+    /// A camera at `eye` that looks along `forward`, which needs no unit length, with `up` as far up as that allows; if it looks
+    /// straight along `up`, with +X up.
+    ///
+    /// # Errors
+    /// As [`Self::look_at`].
+    pub fn looking(
+        eye: Vec3,
+        forward: Vec3,
+        up: Vec3,
+        fov_y: f32,
+        width: u32,
+        height: u32,
+    ) -> Result<Self, GeometryError> {
+        let length = forward.length();
+        let forward =
+            normalized(forward).ok_or(GeometryError::NotPositive { what: "length of the view direction", value: length })?;
+        let right = normalized(forward.cross(up)).unwrap_or(Vec3::Z * -forward.y.signum());
         let tan_half_y = positive("tangent of half the field of view", libm::tanf(0.5 * fov_y))?;
         positive("what the field of view leaves of a half circle", core::f32::consts::PI - fov_y)?;
         if width == 0 || height == 0 {

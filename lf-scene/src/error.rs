@@ -1,4 +1,4 @@
-//! The crate's one error type.
+//! The crate's errors.
 
 use std::path::PathBuf;
 
@@ -9,37 +9,66 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// A glTF file could not be read.
-    #[error("cannot read the glTF scene {}", path.display())]
-    Gltf {
+    /// A file could not be imported.
+    #[error("cannot import {}", path.display())]
+    Import {
         /// The file.
         path: PathBuf,
-        /// What the reader says.
-        source: Box<gltf::Error>,
-    },
-    /// An OBJ file could not be read.
-    #[error("cannot read the OBJ mesh {}", path.display())]
-    Obj {
-        /// The file.
-        path: PathBuf,
-        /// What the reader says.
-        source: tobj::LoadError,
-    },
-    /// A file without triangles.
-    #[error("{} holds no triangles", path.display())]
-    NoTriangles {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A file whose numbers make no geometry.
-    #[error("{} holds broken geometry", path.display())]
-    Broken {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        source: GeometryError,
+        /// What is wrong with it.
+        source: ImportError,
     },
     /// A scene without triangles, or with a vertex that is not finite.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+}
+
+/// What is wrong with a file that was to be imported.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ImportError {
+    /// A file could not be read.
+    #[error("cannot read {}", path.display())]
+    Io {
+        /// The file, or one that it names.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file breaks its format.
+    #[error("{place}: {problem}")]
+    Malformed {
+        /// Which part of the file.
+        place: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The file needs what this importer does not have.
+    #[error("{what}, which this program does not support")]
+    Unsupported {
+        /// What it needs.
+        what: String,
+    },
+    /// The file asks for more memory than it may take.
+    #[error("{what} need {bytes} bytes of memory, and {left} are left of what the import may take")]
+    LimitExceeded {
+        /// What would take the memory.
+        what: &'static str,
+        /// How much it would take.
+        bytes: u64,
+        /// How much is left.
+        left: u64,
+    },
+    /// There is nothing to see.
+    #[error("it holds no triangles")]
+    NoTriangles,
+    /// Its numbers make no geometry.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+}
+
+impl ImportError {
+    /// A part of the file that breaks the format.
+    pub(crate) fn malformed(place: impl Into<String>, problem: impl ToString) -> Self {
+        Self::Malformed { place: place.into(), problem: problem.to_string() }
+    }
 }

@@ -26,9 +26,11 @@ mod tracer;
 
 pub use capture::{Capture, capture_cube, capture_slabs};
 pub use environment::{Environment, EnvironmentMap};
-pub use error::SceneError;
+pub use error::{ImportError, SceneError};
 pub use free_space::{FreeSpace, find_free_space, is_free};
-pub use import::{Imported, import_gltf, import_obj};
+pub use import::{
+    ImportOptions, Imported, ImportedEnvironment, SceneCamera, import_environment, import_gltf, import_gltf_slice, import_obj,
+};
 pub use light::{Illuminant, Light, Lighting};
 pub use material::{ColorEncoding, Material, Pattern, Scattering, Surface, Texture};
 pub use scene::{Scene, SceneBuilder, Vertex};

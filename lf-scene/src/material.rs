@@ -70,7 +70,7 @@ pub struct Texture {
 }
 
 /// How 8-bit colour channels stand for amounts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ColorEncoding {
     /// By sRGB's transfer function.
     Srgb,

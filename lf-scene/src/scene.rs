@@ -119,6 +119,18 @@ impl SceneBuilder {
         self.triangles.is_empty()
     }
 
+    /// Corner vertices and material number of each triangle so far.
+    #[must_use]
+    pub fn triangles(&self) -> &[([Vertex; 3], u32)] {
+        &self.triangles
+    }
+
+    /// All materials so far, by number.
+    #[must_use]
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
     /// The smallest box around all vertices so far: (min, max).
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
