@@ -3,8 +3,12 @@
 use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use lf_math::{GeometryError, Image};
+
+use crate::distribution::Distribution;
+use crate::material::luminance;
+use crate::random::Random;
 
 /// The radiance that arrives from outside the scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +25,9 @@ pub enum Environment {
 pub struct EnvironmentMap {
     radiance: Image<Vec3>,
     turn: f32,
+    /// How much light each cell between texel centres sends; `None` if none does. Row by row; one row more than texels, as the first and the last
+    /// reach from the centres to the poles.
+    cells: Option<Distribution>,
 }
 
 impl Environment {
@@ -35,6 +42,42 @@ impl Environment {
             Self::Map(map) => map.towards(direction),
         }
     }
+
+    /// Whether any direction has radiance.
+    pub(crate) fn shines(&self) -> bool {
+        match self {
+            Self::Sky(zenith) => *zenith != Vec3::ZERO,
+            Self::Map(map) => map.cells.is_some(),
+        }
+    }
+
+    /// A unit direction, picked about in proportion to its luminance, and the density there, 1/sr.
+    pub(crate) fn sample(&self, random: &mut Random) -> Option<(Vec3, f32)> {
+        match self {
+            Self::Sky(_) => {
+                // The integral of `pdf` below y, solved for y.
+                let y = (4.0 + 12.0 * f64::from(random.uniform())).sqrt() - 3.0;
+                let direction = at_height(y.clamp(-1.0, 1.0), TAU * random.uniform());
+                Some((direction, self.pdf(direction)))
+            }
+            Self::Map(map) => map.sample(random),
+        }
+    }
+
+    /// How densely [`Self::sample`] picks a unit direction, 1/sr.
+    pub(crate) fn pdf(&self, direction: Vec3) -> f32 {
+        match self {
+            Self::Sky(_) => (3.0 + direction.y) / (12.0 * PI),
+            Self::Map(map) => map.pdf(direction),
+        }
+    }
+}
+
+/// The unit vector of a height at an angle from −Z towards +X.
+fn at_height(y: f64, angle: f32) -> Vec3 {
+    // In `f64`: near the poles 1 − y² has few digits.
+    let radius = (1.0 - y * y).max(0.0).sqrt() as f32;
+    Vec3::new(radius * angle.sin(), y as f32, -radius * angle.cos())
 }
 
 impl EnvironmentMap {
@@ -43,28 +86,85 @@ impl EnvironmentMap {
     /// # Errors
     /// All values must be finite and none negative; the turn must be finite.
     pub fn new(radiance: Image<Vec3>, turn: f32) -> Result<Self, GeometryError> {
-        let values = radiance.texels().iter().flat_map(|texel| texel.to_array()).chain([turn.abs()]);
+        let values = radiance.texels().iter().flat_map(Vec3::to_array).chain([turn.abs()]);
         for value in values {
             if !(value.is_finite() && value >= 0.0) {
                 return Err(GeometryError::NotFinite { what: "radiance of the environment", value });
             }
         }
-        Ok(Self { radiance, turn })
+        let mut map = Self { radiance, turn, cells: None };
+        let columns = map.radiance.width();
+        let weight = |row: u32, column: u32| f64::from(map.cell_luminance(column, row)) * map.cell_angle(row);
+        let rows = 0..=map.radiance.height();
+        map.cells = Distribution::new(
+            rows.flat_map(|row| (0..columns).map(move |column| (row, column))).map(|(row, column)| weight(row, column)),
+        );
+        Ok(map)
     }
 
     /// Radiance along a unit direction, bilinearly interpolated.
     fn towards(&self, direction: Vec3) -> Vec3 {
-        let (width, height) = (self.radiance.width(), self.radiance.height());
+        let position = self.texel_of(direction);
+        let base = position.floor();
+        let [upper_left, upper_right, lower_left, lower_right] = self.corners(base.x as i64, base.y as i64);
+        let across = position - base;
+        upper_left.lerp(upper_right, across.x).lerp(lower_left.lerp(lower_right, across.x), across.y)
+    }
+
+    /// Position of a unit direction among texel centres: −½ is the edge of the first texel.
+    fn texel_of(&self, direction: Vec3) -> Vec2 {
         let u = (direction.x.atan2(-direction.z) - self.turn) / TAU + 0.5;
-        let v = direction.y.clamp(-1.0, 1.0).acos() / PI;
-        let (x, y) = (u.rem_euclid(1.0) * width as f32 - 0.5, (v * height as f32 - 0.5).max(0.0));
-        let (left, top) = (x.floor(), y.floor());
-        let column = |i: i64| i.rem_euclid(i64::from(width)) as u32;
-        let row = |i: f32| (i as u32).min(height - 1);
-        let across = |y: u32| {
-            let texel = |i: i64| self.radiance.get(column(i), y);
-            texel(left as i64).lerp(texel(left as i64 + 1), x - left)
-        };
-        across(row(top)).lerp(across(row(top + 1.0)), y - top)
+        let v = direction.x.hypot(direction.z).atan2(direction.y) / PI;
+        Vec2::new(u.rem_euclid(1.0) * self.radiance.width() as f32, v * self.radiance.height() as f32) - 0.5
+    }
+
+    /// The four texels around a cell; columns go round, rows end at the poles.
+    fn corners(&self, column: i64, row: i64) -> [Vec3; 4] {
+        let (width, height) = (i64::from(self.radiance.width()), i64::from(self.radiance.height()));
+        let texel = |x: i64, y: i64| self.radiance.get(x.rem_euclid(width) as u32, y.clamp(0, height - 1) as u32);
+        [texel(column, row), texel(column + 1, row), texel(column, row + 1), texel(column + 1, row + 1)]
+    }
+
+    /// Mean luminance of a cell, which is positive if any point of it has radiance.
+    fn cell_luminance(&self, column: u32, row: u32) -> f32 {
+        let corners = self.corners(i64::from(column), i64::from(row) - 1);
+        0.25 * luminance(corners.into_iter().sum())
+    }
+
+    /// Heights (the sine of latitude) of a row's upper and lower edge.
+    fn row_heights(&self, row: u32) -> [f64; 2] {
+        let height = f64::from(self.radiance.height());
+        let edge = |v: f64| (v.clamp(0.0, height) / height * std::f64::consts::PI).cos();
+        [edge(f64::from(row) - 0.5), edge(f64::from(row) + 0.5)]
+    }
+
+    /// Solid angle of a cell, sr.
+    fn cell_angle(&self, row: u32) -> f64 {
+        let [upper, lower] = self.row_heights(row);
+        (upper - lower) * std::f64::consts::TAU / f64::from(self.radiance.width())
+    }
+
+    /// Picks a cell by its light, and a direction in it evenly.
+    fn sample(&self, random: &mut Random) -> Option<(Vec3, f32)> {
+        let cells = self.cells.as_ref()?;
+        let (width, cell) = (self.radiance.width(), cells.choose(random.fine()));
+        let (column, row) = (cell as u32 % width, (cell / width as usize) as u32);
+        let [upper, lower] = self.row_heights(row);
+        let y = upper + (lower - upper) * f64::from(random.uniform());
+        let u = (column as f32 + 0.5 + random.uniform()) / width as f32;
+        let direction = at_height(y, (u - 0.5) * TAU + self.turn);
+        Some((direction, self.cell_pdf(column, row)))
+    }
+
+    fn pdf(&self, direction: Vec3) -> f32 {
+        let position = self.texel_of(direction).floor();
+        let column = (position.x as i64).rem_euclid(i64::from(self.radiance.width()));
+        let row = (position.y as i64 + 1).clamp(0, i64::from(self.radiance.height()));
+        self.cell_pdf(column as u32, row as u32)
+    }
+
+    fn cell_pdf(&self, column: u32, row: u32) -> f32 {
+        let total = self.cells.as_ref().map_or(f64::INFINITY, Distribution::total);
+        (f64::from(self.cell_luminance(column, row)) / total) as f32
     }
 }

@@ -10,18 +10,26 @@
 
 #![forbid(unsafe_code)]
 
+mod bsdf;
 mod bvh;
 mod capture;
+mod distribution;
+mod emitters;
 mod environment;
 mod error;
 mod free_space;
+mod ggx;
 mod import;
 mod light;
 mod material;
 pub mod museum;
+mod path;
+mod quality;
+mod random;
 pub mod reference;
 pub mod reflectors;
 mod scene;
+mod surface_point;
 mod tracer;
 
 pub use capture::{Capture, capture_cube, capture_slabs};
@@ -33,6 +41,7 @@ pub use import::{
 };
 pub use light::{Illuminant, Light, Lighting};
 pub use material::{ColorEncoding, Material, Pattern, Scattering, Surface, Texture};
+pub use quality::{Estimate, Illumination, Quality};
 pub use scene::{Scene, SceneBuilder, Vertex};
 pub use tracer::{Traced, Tracer};
 

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use glam::{UVec2, Vec2, Vec3, Vec4};
+use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
 use lf_math::{Image, linear_from_srgb};
 
 /// The linear value of each 8-bit sRGB value.
@@ -123,6 +123,11 @@ impl Material {
         Self { scattering: Scattering::Mirror, ..Self::diffuse(color) }
     }
 
+    /// Whether rays pass at a texture coordinate.
+    pub(crate) fn is_hole(&self, uv: Vec2) -> bool {
+        self.alpha_cutoff.is_some_and(|cutoff| self.base.alpha(uv) < cutoff)
+    }
+
     /// Memory of the textures, bytes.
     pub(crate) fn memory_bytes(&self) -> usize {
         let scattering = match &self.scattering {
@@ -152,6 +157,19 @@ impl Surface {
         }
     }
 
+    /// The mean colour of a picture or of a pattern's palette: positive if the colour is anywhere.
+    pub(crate) fn mean(&self) -> Vec3 {
+        let mean = |colors: &[Vec3]| colors.iter().sum::<Vec3>() / colors.len() as f32;
+        match self {
+            Self::Uniform(color) => *color,
+            Self::Textured(texture, factor) => texture.mean() * *factor,
+            Self::Procedural(Pattern::Fields(colors, _)) => mean(colors),
+            Self::Procedural(Pattern::Checker(pair) | Pattern::Stripes(pair, _) | Pattern::Rings(pair, _)) => {
+                mean(pair)
+            }
+        }
+    }
+
     /// Alpha at a texture coordinate; 1 without a picture.
     #[must_use]
     pub fn alpha(&self, uv: Vec2) -> f32 {
@@ -166,6 +184,13 @@ impl Texture {
     /// Memory of the texels, bytes.
     fn memory_bytes(&self) -> usize {
         size_of_val(self.image.texels())
+    }
+
+    /// Mean of linear RGB.
+    fn mean(&self) -> Vec3 {
+        let texels = self.image.texels();
+        let sum: DVec3 = texels.iter().map(|texel| self.linear(*texel).truncate().as_dvec3()).sum();
+        (sum / texels.len() as f64).as_vec3()
     }
 
     /// Bilinear sample of linear RGB and alpha, repeating in both directions. Coordinates that are not finite give the first texel.
@@ -191,6 +216,11 @@ impl Texture {
         };
         Vec3::from(color).extend(unit(a))
     }
+}
+
+/// Luminance of linear RGB (Rec. 709).
+pub(crate) fn luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
 /// An index in −1 … size brought into 0 … size − 1.

@@ -8,7 +8,7 @@ use glam::Vec3;
 use lf_math::{Cell, Image, Pinhole, Ray, TriangleMesh, normalized, reflect};
 use rayon::prelude::*;
 
-use crate::bvh::{TriangleBvh, interpolate};
+use crate::bvh::{TriangleBvh, interpolate, plane_normal};
 use crate::capture::trace_in_cell_space;
 use crate::tracer::Tracer;
 
@@ -45,9 +45,11 @@ impl Mirror {
     /// The mirrored ray of one that meets the mesh, about the interpolated normal (Eq. 2 of the paper).
     #[must_use]
     pub fn reflected(&self, ray: &Ray) -> Option<Ray> {
-        let hit = self.bvh.nearest(ray.origin, ray.direction)?;
-        let normals = self.mesh.triangles()[hit.triangle].map(|i| self.mesh.normals()[i as usize]);
-        let normal = normalized(interpolate(normals, hit.shares)).unwrap_or(hit.normal);
+        let hit = self.bvh.nearest(ray.origin, ray.direction, |_, _| true)?;
+        let corners = self.mesh.triangles()[hit.triangle];
+        let normals = corners.map(|i| self.mesh.normals()[i as usize]);
+        let plane = || plane_normal(corners.map(|i| self.mesh.positions()[i as usize]));
+        let normal = normalized(interpolate(normals, hit.shares)).unwrap_or_else(plane);
         Some(Ray { origin: ray.at(hit.t), direction: reflect(ray.direction, normal) })
     }
 }

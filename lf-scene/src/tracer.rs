@@ -1,12 +1,13 @@
-//! The ray tracer: nearest hit, direct light with hard shadows.
+//! The ray tracer.
 
-use std::f32::consts::PI;
+use glam::Vec3;
 
-use glam::{Vec2, Vec3};
-
-use crate::bvh::{Hit, TriangleBvh, interpolate};
-use crate::light::Illuminant;
+use crate::bvh::{Hit, TriangleBvh};
+use crate::emitters::Emitters;
+use crate::quality::{Estimate, Illumination, Quality};
+use crate::random::Random;
 use crate::scene::Scene;
+use crate::surface_point::{SurfacePoint, uv_on};
 
 /// What a ray met.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,28 +19,49 @@ pub struct Traced {
 }
 
 /// A scene ready to be traced. World space, shared between threads.
+///
+/// An answer is a function of scene, quality and ray alone: neither the order of rays nor the number of threads matters. The
+/// same scene in a unit that is a power of two larger or smaller gives the same bits.
 pub struct Tracer {
     scene: Scene,
     bvh: TriangleBvh,
-    /// How far secondary rays start above a surface, metres.
-    offset: f32,
+    quality: Quality,
+    emitters: Emitters,
+    /// Whether any material has holes.
+    has_holes: bool,
 }
 
 impl Tracer {
-    /// Builds the acceleration structure: about a second per million triangles.
+    /// Builds the acceleration structure: about a second per million triangles. Traces direct light, one sample a ray.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
         let bvh = TriangleBvh::new(scene.triangles().iter().map(|(corners, _)| corners.map(|v| v.position)));
-        let (min, max) = scene.bounds();
-        // A hit point is off by a few ulp of the largest coordinate involved, about 1e-6 of the scene's reach.
-        let offset = 1e-5 * min.abs().max(max.abs()).max_element();
-        Self { scene, bvh, offset }
+        let quality = Quality::default();
+        let emitters = emitters(&scene, &quality);
+        let has_holes = scene.materials().iter().any(|material| material.alpha_cutoff.is_some());
+        Self { scene, bvh, quality, emitters, has_holes }
+    }
+
+    /// The same with another quality.
+    #[must_use]
+    pub fn with_quality(self, quality: Quality) -> Self {
+        Self { emitters: emitters(&self.scene, &quality), quality, ..self }
     }
 
     /// The scene.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// What is traced, and how well.
+    #[must_use]
+    pub fn quality(&self) -> &Quality {
+        &self.quality
+    }
+
+    pub(crate) fn emitters(&self) -> &Emitters {
+        &self.emitters
     }
 
     /// Memory of the triangles, their hierarchy and the textures, bytes.
@@ -52,71 +74,84 @@ impl Tracer {
     /// finite, or an origin that is not finite, hits nothing.
     #[must_use]
     pub fn distance(&self, origin: Vec3, direction: Vec3) -> Option<f32> {
-        self.bvh.nearest(origin, direction).map(|hit| hit.t)
+        self.nearest(origin, direction, None).map(|hit| hit.t)
     }
 
-    /// Radiance along a ray.
+    /// Radiance along a ray: the mean of all samples.
     #[must_use]
     pub fn trace(&self, origin: Vec3, direction: Vec3) -> Traced {
-        match self.bvh.nearest(origin, direction) {
-            Some(hit) => Traced { radiance: self.shade(&hit, origin, direction), distance: hit.t },
-            None => {
-                let towards = lf_math::normalized(direction).unwrap_or(Vec3::ZERO);
-                Traced { radiance: self.scene.lighting().environment.towards(towards), distance: f32::INFINITY }
-            }
-        }
+        let Estimate { radiance, distance, .. } = self.estimate(origin, direction);
+        Traced { radiance, distance }
     }
 
-    fn shade(&self, hit: &Hit, origin: Vec3, direction: Vec3) -> Vec3 {
-        let (corners, _) = &self.scene.triangles()[hit.triangle];
-        let geometric = if hit.normal.dot(direction) > 0.0 { -hit.normal } else { hit.normal };
-        let smooth = lf_math::normalized(interpolate(corners.map(|v| v.normal), hit.shares));
-        let normal = smooth.map_or(geometric, |n| if n.dot(geometric) < 0.0 { -n } else { n });
-        let uv = interpolate(corners.map(|v| v.uv.extend(0.0)), hit.shares);
-        let material = self.scene.material(hit.triangle);
-        let base = material.base.color(Vec2::new(uv.x, uv.y));
-        let point = origin + direction * hit.t;
-        let front = hit.normal.dot(direction) < 0.0 || material.double_sided;
-        let emission = if front { material.emission.color(Vec2::new(uv.x, uv.y)) } else { Vec3::ZERO };
-        emission + base / PI * self.irradiance(point, geometric * self.offset, normal)
+    /// Radiance along a ray, and its standard error.
+    #[must_use]
+    pub fn estimate(&self, origin: Vec3, direction: Vec3) -> Estimate {
+        let Some(towards) = lf_math::normalized(direction) else {
+            return Estimate::of(std::iter::once(Vec3::ZERO), f32::INFINITY);
+        };
+        let first = self.nearest(origin, direction, None);
+        let sample = |number| self.follow(first, towards, &mut self.random(number, origin, towards));
+        let samples = (0..self.quality.samples.max(1)).map(sample);
+        Estimate::of(samples, first.map_or(f32::INFINITY, |hit| hit.t))
     }
 
-    /// Irradiance: ambient, and what each visible light adds. Shadow rays start
-    /// `lift` above the point.
-    fn irradiance(&self, point: Vec3, lift: Vec3, normal: Vec3) -> Vec3 {
-        let lighting = self.scene.lighting();
-        let mut sum = lighting.ambient_on(normal);
-        for light in &lighting.lights {
-            let Some(Illuminant { towards, distance, irradiance }) = light.at(point) else { continue };
-            let cosine = normal.dot(towards);
-            if cosine > 0.0 && !self.bvh.occluded(point + lift, towards, distance) {
-                sum += irradiance * cosine;
-            }
-        }
-        sum
+    /// The random numbers of one sample. Adding zero makes −0 and 0 the same.
+    fn random(&self, sample: u32, origin: Vec3, towards: Vec3) -> Random {
+        let places = [origin * self.bvh.scale(), towards].map(|v| (v + 0.0).to_array().map(f32::to_bits));
+        let words = places.into_iter().flatten().map(u64::from);
+        Random::of([self.quality.seed, u64::from(sample)].into_iter().chain(words))
     }
+
+    /// The nearest hit of a ray, which may start on the surface of a triangle.
+    pub(crate) fn nearest(&self, origin: Vec3, direction: Vec3, from: Option<usize>) -> Option<Hit> {
+        self.bvh.nearest(origin, direction, |triangle, shares| Some(triangle) != from && self.stops(triangle, shares))
+    }
+
+    /// Whether anything but the lit point's triangle and that of the light is between the lit point and the farthest point
+    /// in a direction.
+    pub(crate) fn shadowed(&self, lit: &SurfacePoint, direction: Vec3, farthest: f32, light: Option<usize>) -> bool {
+        let other = |triangle: usize| triangle != lit.triangle && Some(triangle) != light;
+        let stops = |triangle: usize, shares: Vec3| other(triangle) && self.stops(triangle, shares);
+        self.bvh.occluded(lit.launch(direction), direction, farthest, stops)
+    }
+
+    /// Whether a point of a triangle is none of its material's holes.
+    fn stops(&self, triangle: usize, shares: Vec3) -> bool {
+        let is_hole = || self.scene.material(triangle).is_hole(uv_on(&self.scene.triangles()[triangle].0, shares));
+        !(self.has_holes && is_hole())
+    }
+}
+
+/// What has to be looked for; the ambient term, if there is one, stands for the environment.
+fn emitters(scene: &Scene, quality: &Quality) -> Emitters {
+    let ambient = quality.illumination == Illumination::Direct && scene.lighting().ambient != Vec3::ZERO;
+    Emitters::new(scene, !ambient)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::PI;
+
+    use glam::Vec2;
+
     use super::*;
     use crate::{Environment, Light, Lighting, Material, SceneBuilder};
 
-    fn lit_floor(lights: Vec<Light>) -> Tracer {
+    fn lit_floor(lights: Vec<Light>, environment: Environment) -> Tracer {
         let mut builder = SceneBuilder::default();
         let white = builder.material(Material::diffuse(Vec3::ONE));
         let corner = Vec3::new(-50.0, 0.0, -50.0);
         builder.parallelogram(corner, Vec3::Z * 100.0, Vec3::X * 100.0, Vec2::ONE, white);
         builder.cuboid(Vec3::new(4.0, 1.0, -1.0), Vec3::new(6.0, 2.0, 1.0), white);
-        let lighting =
-            Lighting { lights, ambient: Vec3::ZERO, environment: Environment::Sky(Vec3::new(0.2, 0.4, 0.8)) };
+        let lighting = Lighting { lights, ambient: Vec3::ZERO, environment };
         Tracer::new(builder.build("floor", lighting).unwrap())
     }
 
     #[test]
     fn point_light_follows_the_cosine_and_inverse_square_laws() {
-        let tracer =
-            lit_floor(vec![Light::Point { position: Vec3::new(0.0, 3.0, 0.0), intensity: Vec3::splat(9.0 * PI) }]);
+        let lamp = Light::Point { position: Vec3::new(0.0, 3.0, 0.0), intensity: Vec3::splat(9.0 * PI) };
+        let tracer = lit_floor(vec![lamp], Environment::BLACK);
         for x in [0.0f32, 1.0, 2.5] {
             let traced = tracer.trace(Vec3::new(x, 0.5, 0.1), Vec3::new(0.0, -2.0, 0.0));
             let r2 = f64::from(x * x) + 9.0 + 0.01;
@@ -128,14 +163,14 @@ mod tests {
 
     #[test]
     fn a_box_casts_a_shadow_of_the_sun() {
-        let tracer = lit_floor(vec![Light::Sun { towards: Vec3::Y, irradiance: Vec3::splat(PI) }]);
+        let tracer = lit_floor(vec![Light::Sun { towards: Vec3::Y, irradiance: Vec3::splat(PI) }], Environment::BLACK);
         let below = |x: f32| tracer.trace(Vec3::new(x, 0.5, 0.0), Vec3::NEG_Y).radiance.x;
         assert_eq!((below(3.9), below(5.0), below(6.1)), (1.0, 0.0, 1.0));
     }
 
     #[test]
     fn rays_that_leave_see_the_sky_and_broken_rays_hit_nothing() {
-        let tracer = lit_floor(vec![]);
+        let tracer = lit_floor(vec![], Environment::Sky(Vec3::new(0.2, 0.4, 0.8)));
         let up = tracer.trace(Vec3::Y, Vec3::Y);
         assert_eq!(up, Traced { radiance: Vec3::new(0.2, 0.4, 0.8), distance: f32::INFINITY });
         assert_eq!(tracer.distance(Vec3::Y, Vec3::ZERO), None);
