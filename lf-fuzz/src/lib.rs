@@ -8,6 +8,7 @@ mod assemble;
 pub mod bc1_decode;
 pub mod bc1_encode;
 mod field;
+pub mod gltf;
 pub mod import;
 pub mod parse;
 pub mod round_trip;
@@ -18,9 +19,10 @@ pub mod unpack;
 pub type Target = fn(&[u8]);
 
 /// All targets by name.
-pub const TARGETS: [(&str, Target); 7] = [
+pub const TARGETS: [(&str, Target); 8] = [
     ("bc1_decode", bc1_decode::run),
     ("bc1_encode", bc1_encode::run),
+    ("gltf", gltf::run),
     ("import", import::run),
     ("parse", parse::run),
     ("round_trip", round_trip::run),

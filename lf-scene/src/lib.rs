@@ -1,7 +1,7 @@
 //! Scenes, a ray tracer and the capture of environment light fields: the independent oracle of the other crates.
 //!
 //! A [`Scene`] is triangles with textured diffuse or emissive materials and simple lights, made in code
-//! ([`museum`]) or read from glTF ([`import_gltf`]). A [`Tracer`] answers one ray at a time. From it come the slabs
+//! ([`EMBEDDED`]) or read from glTF ([`import_gltf`]). A [`Tracer`] answers one ray at a time. From it come the slabs
 //! ([`capture_slabs`]), the environment map ([`capture_cube`]) and the reference pictures ([`mod@reference`]).
 //! [`reflectors`] holds the objects to look at.
 //!
@@ -14,6 +14,7 @@ mod bsdf;
 mod bvh;
 mod capture;
 mod distribution;
+mod embedded;
 mod emitters;
 mod environment;
 mod error;
@@ -22,7 +23,6 @@ mod ggx;
 mod import;
 mod light;
 mod material;
-pub mod museum;
 mod path;
 mod quality;
 mod random;
@@ -33,6 +33,7 @@ mod surface_point;
 mod tracer;
 
 pub use capture::{Capture, capture_cube, capture_slabs};
+pub use embedded::{EMBEDDED, EmbeddedScene, beside, corridor, forest, mirror_box, museum};
 pub use environment::{Environment, EnvironmentMap};
 pub use error::{ImportError, SceneError};
 pub use free_space::{FreeSpace, find_free_space, is_free};

@@ -1,4 +1,4 @@
-//! The embedded scene: a museum room in the manner of the paper's Fig. 10.
+//! A museum room in the manner of the paper's Fig. 10.
 //!
 //! Coloured columns stand between the cell and framed pictures on the walls, so that a moving eye sees the columns
 //! cover other parts of the pictures. The floor is a checkerboard; some small objects stand close to the cell.
