@@ -27,6 +27,12 @@ const PYTHON_REQUIREMENTS: &str = "requirements.txt";
 const NODE_REQUIREMENTS: [&str; 2] = ["package.json", "package-lock.json"];
 const NODE: &str = "target/third-party/node";
 const STAMP: &str = "target/third-party/stamp";
+/// What our tracer and Mitsuba both trace: folder and options.
+const GROUND_TRUTH: [[&str; 2]; 3] = [
+    ["museum-direct", "--scene museum --bounces 1 --rays 1000 --samples 256"],
+    ["museum-global", "--scene museum --bounces 6 --rays 400 --samples 256"],
+    ["mirror-box-global", "--scene mirror-box --bounces 6 --rays 400 --samples 256"],
+];
 const SAMPLES: &str = "target/third-party/samples";
 
 /// Runs every check in `tests/third_party`, installing first what is missing.
@@ -101,7 +107,13 @@ fn write_samples(root: &Path) -> Result<(), String> {
         std::fs::remove_dir_all(&folder).map_err(|error| format!("cannot remove {}: {error}", folder.display()))?;
     }
     make_folder(&folder)?;
-    CommandLine::new(&format!("cargo run -q -p lf-exchange --example export_samples --locked -- {SAMPLES}")).run()
+    CommandLine::new(&format!("cargo run -q -p lf-exchange --example export_samples --locked -- {SAMPLES}")).run()?;
+    for [name, options] in GROUND_TRUTH {
+        let out = format!("{SAMPLES}/ground-truth/{name}");
+        CommandLine::new(&format!("cargo run -q -p lf-tests --example ground_truth --locked -- {out} {options}"))
+            .run()?;
+    }
+    Ok(())
 }
 
 /// A command of the virtual environment's Python. Its path is absolute, as commands run in another folder should have it.
