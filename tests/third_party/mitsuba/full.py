@@ -2,8 +2,9 @@
 
     python full.py SCENES ENVIRONMENT OUT
 
-SCENES is the folder with `wooden-staircase.glb` and `grey-white-room-small.glb`, ENVIRONMENT a panorama (.hdr) that lights the second,
-OUT a folder for the scenes as Mitsuba reads them. Takes about ten minutes on two cores. Prints a table in Markdown.
+SCENES is the folder with `wooden-staircase.glb`, `japanese-classroom.glb` and `grey-white-room-small.glb`, ENVIRONMENT a panorama (.hdr)
+that lights the last, OUT a folder for the scenes as Mitsuba reads them. Takes about a quarter of an hour on two cores. Prints a table
+in Markdown.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ import mitsuba as mi
 
 ROOT = Path(__file__).resolve().parents[3]
 VARIANT = "llvm_ad_rgb"
-# Rays and paths a ray: of direct light every ray counts, of global illumination the noise.
-DIRECT = ["--bounces", "1", "--rays", "16384", "--samples", "512"]
-GLOBAL = ["--bounces", "8", "--rays", "4096", "--samples", "2048"]
+# Scatterings, rays, paths a ray.
+DIRECT = ["--bounces", "1", "--rays", "4096", "--samples", "4096"]
+GLOBAL = ["--bounces", "8", "--rays", "4096", "--samples", "1024"]
 
 
 def ours(out: Path, arguments: list[str]) -> None:
@@ -33,6 +34,7 @@ def scenes(folder: Path, environment: Path) -> dict[str, list[str]]:
         "museum": ["--scene", "museum"],
         "mirror-box": ["--scene", "mirror-box"],
         "wooden-staircase": ["--scene", str(folder / "wooden-staircase.glb")],
+        "japanese-classroom": ["--scene", str(folder / "japanese-classroom.glb")],
         "grey-white-room": ["--scene", str(folder / "grey-white-room-small.glb"), "--environment", str(environment)],
     }
 
