@@ -13,6 +13,7 @@ use lf_format::{Limits, TexelEncoding};
 use lf_math::PlanePlacement;
 
 use crate::exchange_args::{ExportArgs, ImportArgs};
+use crate::scene_args::{SceneArgs, ViewArgs};
 
 /// Reflections with parallax from light field slabs: capture, compress, inspect and render them.
 #[derive(Debug, Parser)]
@@ -28,6 +29,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Capture a scene into a .lfslab file
     Capture(CaptureArgs),
+    /// Show what a scene holds, and a picture of it
+    View(ViewArgs),
     /// Draw a mirror that reflects a .lfslab file
     Render(RenderArgs),
     /// Show what a .lfslab file holds
@@ -40,21 +43,6 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Make a .lfslab file of pictures from a camera grid
     Import(ImportArgs),
-}
-
-/// Where the light comes from.
-#[derive(Debug, Args)]
-pub(crate) struct SceneArgs {
-    /// A glTF scene (.glb, .gltf) instead of the embedded museum
-    #[arg(long, value_name = "FILE")]
-    pub(crate) scene: Option<PathBuf>,
-    /// The cell: centre and edge length in metres, as x,y,z,size [default: the museum's, or free space near the scene's
-    /// camera]
-    #[arg(long, value_name = "X,Y,Z,SIZE", allow_hyphen_values = true)]
-    pub(crate) cell: Option<CellArg>,
-    /// How many cameras and texels
-    #[arg(long, value_enum, default_value_t = Preset::Small)]
-    pub(crate) preset: Preset,
 }
 
 #[derive(Debug, Args)]
@@ -289,7 +277,7 @@ fn lambda(text: &str) -> Result<f32, String> {
 }
 
 /// Exactly `N` numbers set apart by commas, within ±1e12: beyond that the tracer's products leave `f32`.
-fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let parsed: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse::<f64>()).collect();
     let finite = parsed.ok().filter(|all| all.iter().all(|n| n.abs() <= 1e12));
     let list = finite.and_then(|all| <[f64; N]>::try_from(all).ok());

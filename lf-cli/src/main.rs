@@ -17,8 +17,10 @@ mod input;
 mod output;
 mod pictures;
 mod render;
+mod scene_args;
 mod sources;
 mod validate;
+mod view;
 
 use std::process::ExitCode;
 
@@ -41,6 +43,7 @@ fn run(command: &Command) -> Result<()> {
     match command {
         Command::Demo(args) => demo::run(args),
         Command::Capture(args) => capture::run(args),
+        Command::View(args) => view::run(args),
         Command::Render(args) => render::run(args),
         Command::Info(args) => info::run(args),
         Command::Validate(args) => validate::run(args),

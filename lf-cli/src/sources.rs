@@ -3,12 +3,15 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use glam::Vec3;
 use lf_math::{Cell, TriangleMesh};
-use lf_scene::{Scene, Tracer, find_free_space, import_gltf, import_obj, is_free, museum, reflectors};
+use lf_scene::{
+    EMBEDDED, Environment, EnvironmentMap, ImportOptions, Imported, Lighting, Scene, SceneCamera, Tracer, find_free_space,
+    import_environment, import_gltf, import_obj, is_free, reflectors,
+};
 
-use crate::args::SceneArgs;
+use crate::scene_args::{LightArgs, SceneArgs};
 
 /// The eye's distance from the cell's centre in edge lengths. A cell found in free space leaves room for it.
 pub(crate) const EYE_DISTANCE: f32 = 1.6;
@@ -27,17 +30,15 @@ pub(crate) struct Source {
 
 impl Source {
     pub(crate) fn load(args: &SceneArgs) -> Result<Self> {
-        let (scene, camera, license) = match &args.scene {
-            None => (museum::scene(), None, Some("CC0 1.0 (made by this program)".to_owned())),
-            Some(path) => import(path)?,
-        };
+        let Loaded { scene, cameras, license, cell: embedded } = Loaded::open(&args.scene, &args.light)?;
+        let camera = find_camera(&cameras, args.camera.as_deref())?;
         let start = Instant::now();
         let tracer = Tracer::new(scene);
         let build_time = start.elapsed();
-        let cell = match args.cell {
-            Some(arg) => Cell::cube(arg.center, arg.size).context("--cell")?,
-            None if args.scene.is_none() => museum::cell(),
-            None => free_cell(&tracer, camera)?,
+        let cell = match (args.cell, embedded) {
+            (Some(arg), _) => Cell::cube(arg.center, arg.size).context("--cell")?,
+            (None, Some(cell)) => cell,
+            (None, None) => free_cell(&tracer, camera)?,
         };
         if !is_free(&tracer, &cell) {
             eprintln!("warning: something stands inside the cell; reflections will not show it");
@@ -53,22 +54,81 @@ impl Source {
     }
 }
 
-/// A scene, where its camera stands and looks, and its licence line.
-type ImportedScene = (Scene, Option<(Vec3, Vec3)>, Option<String>);
+/// A scene as it was asked for.
+pub(crate) struct Loaded {
+    pub(crate) scene: Scene,
+    pub(crate) cameras: Vec<SceneCamera>,
+    /// The file's licence line, or our own.
+    pub(crate) license: Option<String>,
+    /// The cell of an embedded scene.
+    pub(crate) cell: Option<Cell>,
+}
 
-fn import(path: &Path) -> Result<ImportedScene> {
-    let imported = import_gltf(path)?;
-    for warning in &imported.warnings {
-        eprintln!("warning: {}: {warning}", path.display());
+impl Loaded {
+    /// An embedded scene by name, else a file. Warnings go to standard error.
+    pub(crate) fn open(scene: &str, light: &LightArgs) -> Result<Self> {
+        let environment = environment(light)?;
+        if let Some(embedded) = EMBEDDED.iter().find(|embedded| embedded.name == scene) {
+            let license = Some("CC0 1.0 (made by this program)".to_owned());
+            let scene = under((embedded.scene)(), environment);
+            return Ok(Self { scene, cameras: vec![], license, cell: Some((embedded.cell)()) });
+        }
+        let path = Path::new(scene);
+        if path.extension().is_none() && !path.exists() {
+            let names: Vec<&str> = EMBEDDED.iter().map(|embedded| embedded.name).collect();
+            bail!("there is neither a scene nor a file {scene:?}; embedded scenes are {}", names.join(", "));
+        }
+        let imported = import_gltf(path, &ImportOptions { environment, ..ImportOptions::default() })?;
+        warn(path, &imported.warnings);
+        let Imported { scene, cameras, copyright, .. } = imported;
+        Ok(Self { scene, cameras, license: copyright, cell: None })
     }
-    Ok((imported.scene, imported.camera, imported.copyright))
+}
+
+/// The panorama that was asked for.
+fn environment(light: &LightArgs) -> Result<Option<EnvironmentMap>> {
+    let Some(path) = &light.environment else { return Ok(None) };
+    let imported = import_environment(path, light.environment_scale, light.environment_turn.to_radians())?;
+    warn(path, &imported.warnings);
+    Ok(Some(imported.map))
+}
+
+/// Names in files are kept from steering the terminal.
+fn warn(path: &Path, warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("warning: {}: {}", path.display(), warning.escape_debug());
+    }
+}
+
+/// An embedded scene in a panorama.
+fn under(scene: Scene, environment: Option<EnvironmentMap>) -> Scene {
+    let Some(map) = environment else { return scene };
+    let lighting = Lighting { environment: Environment::Map(map.into()), ..scene.lighting().clone() };
+    scene.with_lighting(lighting)
+}
+
+/// The camera of a number or name; without one the first, if there is any.
+pub(crate) fn find_camera<'a>(cameras: &'a [SceneCamera], asked: Option<&str>) -> Result<Option<&'a SceneCamera>> {
+    let Some(asked) = asked else { return Ok(cameras.first()) };
+    let named = || cameras.iter().find(|camera| camera.name.as_deref() == Some(asked));
+    let numbered = asked.parse::<usize>().ok().and_then(|number| cameras.get(number));
+    let found = numbered.or_else(named);
+    if found.is_none() {
+        let names = cameras.iter().enumerate().map(|(i, camera)| match &camera.name {
+            Some(name) => format!("{i} {name:?}"),
+            None => i.to_string(),
+        });
+        let there = if cameras.is_empty() { "none".to_owned() } else { names.collect::<Vec<_>>().join(", ") };
+        bail!("the scene has no camera {asked:?}; it has {there}");
+    }
+    Ok(found)
 }
 
 /// The largest cube with room for the eyes around it, near the camera or in the scene's middle.
-fn free_cell(tracer: &Tracer, camera: Option<(Vec3, Vec3)>) -> Result<Cell> {
+fn free_cell(tracer: &Tracer, camera: Option<&SceneCamera>) -> Result<Cell> {
     let (min, max) = tracer.scene().bounds();
-    let eye = camera.map_or(0.5 * (min + max), |(eye, _)| eye);
-    let space = find_free_space(tracer, eye, camera.map(|(_, forward)| forward));
+    let eye = camera.map_or(0.5 * (min + max), |camera| camera.position);
+    let space = find_free_space(tracer, eye, camera.map(|camera| camera.forward));
     let space = space.context("found no free space near the scene's camera; give a cell by --cell x,y,z,size")?;
     Ok(Cell::cube(space.center.as_dvec3(), space.radius / (1.1 * EYE_DISTANCE))?)
 }

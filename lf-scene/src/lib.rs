@@ -31,6 +31,7 @@ pub mod reflectors;
 mod scene;
 mod surface_point;
 mod tracer;
+mod view;
 
 pub use capture::{Capture, capture_cube, capture_slabs};
 pub use embedded::{EMBEDDED, EmbeddedScene, beside, corridor, forest, mirror_box, museum};
@@ -45,6 +46,7 @@ pub use material::{ColorEncoding, Material, Pattern, Scattering, Surface, Textur
 pub use quality::{Estimate, Illumination, Quality};
 pub use scene::{Scene, SceneBuilder, Vertex};
 pub use tracer::{Traced, Tracer};
+pub use view::view;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

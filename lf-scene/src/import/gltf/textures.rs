@@ -4,7 +4,6 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::sync::Arc;
 
-use gltf::image::Source;
 use gltf::texture::{Info, MagFilter, WrappingMode};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use lf_math::Image;
@@ -49,11 +48,15 @@ impl Textures<'_> {
 
     fn picture(&self, source: &gltf::Image<'_>, budget: &mut Budget) -> Result<Image<[u8; 4]>, ImportError> {
         let place = format!("image {}", source.index());
-        match source.source() {
-            Source::View { view, .. } => decode(&place, self.container.view(&view)?, budget),
-            Source::Uri { uri, .. } => {
-                decode(&place, &uri::load(&place, uri, self.container.folder, budget)?, budget)
-            }
+        let document = &self.container.document;
+        // `source.source()` of the `gltf` crate panics where the file gives neither or no type.
+        let json = document.as_json().images.get(source.index());
+        if let Some(uri) = json.and_then(|json| json.uri.as_ref()) {
+            return decode(&place, &uri::load(&place, uri, self.container.folder, budget)?, budget);
+        }
+        match json.and_then(|json| document.views().nth(json.buffer_view?.value())) {
+            Some(view) => decode(&place, self.container.view(&view)?, budget),
+            None => Err(ImportError::malformed(place, "it names neither a file nor a buffer view")),
         }
     }
 }

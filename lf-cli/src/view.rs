@@ -1,0 +1,113 @@
+//! `lfslab view`: what a scene holds, and how it looks.
+
+use anyhow::{Result, bail};
+use glam::Vec3;
+use lf_math::Pinhole;
+use lf_scene::{Environment, Light, Material, Scattering, Scene, SceneCamera, Surface, Tracer, view};
+
+use crate::output::{check_writable, megabytes, png, print, progress_bar, write, write_exr};
+use crate::pictures::display;
+use crate::scene_args::ViewArgs;
+use crate::sources::{Loaded, find_camera};
+
+/// Vertical field of view where no camera of the scene is used, radians (50°).
+const FOV_Y: f32 = 0.872_664_6;
+
+pub(crate) fn run(args: &ViewArgs) -> Result<()> {
+    args.out.as_deref().map_or(Ok(()), check_writable)?;
+    let loaded = Loaded::open(&args.scene, &args.light)?;
+    let camera = camera(args, &loaded)?;
+    print(&describe(&loaded).join("\n"))?;
+    let Some(out) = &args.out else { return Ok(()) };
+    let is_exr = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+    if !is_exr && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        bail!("cannot write {}: the picture's name must end in .png or .exr", out.display());
+    }
+    let tracer = Tracer::new(loaded.scene);
+    let bar = progress_bar(args.size.height.into(), "view", "rows");
+    let picture = view(&tracer, &camera, &|done| bar.set_position(done));
+    bar.finish_and_clear();
+    if is_exr { write_exr(out, &picture) } else { write(out, &png(&display(&picture))?) }
+}
+
+/// The camera that was asked for; else the scene's first; else one in the cell or the scene's middle, looking along −Z.
+fn camera(args: &ViewArgs, loaded: &Loaded) -> Result<Pinhole> {
+    let (width, height) = (args.size.width, args.size.height);
+    if let (Some(eye), Some(target)) = (args.eye, args.target) {
+        return Ok(Pinhole::look_at(eye.0, target.0, FOV_Y, width, height)?);
+    }
+    if let Some(camera) = find_camera(&loaded.cameras, args.camera.as_deref())? {
+        return Ok(camera.pinhole(width, height)?);
+    }
+    let (min, max) = loaded.scene.bounds();
+    let eye = loaded.cell.map_or(0.5 * (min + max), |cell| cell.center().as_vec3());
+    Ok(Pinhole::looking(eye, Vec3::NEG_Z, Vec3::Y, FOV_Y, width, height)?)
+}
+
+fn describe(loaded: &Loaded) -> Vec<String> {
+    let scene = &loaded.scene;
+    let (min, max) = scene.bounds();
+    let mut lines = vec![
+        format!("{}: {} triangles", scene.name().escape_debug(), scene.triangles().len()),
+        format!("bounds: {min} to {max} m"),
+        format!("materials: {}", materials(scene)),
+        format!("lights: {}", lights(scene)),
+        format!("environment: {}", environment(&scene.lighting().environment)),
+    ];
+    lines.extend((0..).zip(&loaded.cameras).map(|(number, camera): (u32, _)| describe_camera(number, camera)));
+    lines.push(format!("memory: {}", megabytes(scene.memory_bytes() as u64)));
+    // Escaped, so that a file cannot pose as this program or steer the terminal.
+    lines.extend(loaded.license.as_ref().map(|license| format!("licence: {}", license.escape_debug())));
+    lines
+}
+
+fn describe_camera(number: u32, camera: &SceneCamera) -> String {
+    let name = camera.name.as_ref().map_or(String::new(), |name| format!(" \"{}\"", name.escape_debug()));
+    let fov = camera.fov_y.to_degrees();
+    format!("camera {number}{name}: at {:.3} m, looks along {:.3}, {fov:.1}° high", camera.position, camera.forward)
+}
+
+fn environment(environment: &Environment) -> String {
+    match environment {
+        Environment::Sky(zenith) if *zenith == Vec3::ZERO => "none".to_owned(),
+        Environment::Sky(zenith) => format!("sky, radiance {zenith} at the zenith"),
+        Environment::Map(_) => "panorama".to_owned(),
+    }
+}
+
+/// How many things there are of each kind; kinds without any are left out.
+fn tally(kinds: &[(&str, usize)]) -> String {
+    let there: Vec<String> =
+        kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{count} {kind}")).collect();
+    if there.is_empty() { "none".to_owned() } else { there.join(", ") }
+}
+
+fn lights(scene: &Scene) -> String {
+    let count = |is: fn(&Light) -> bool| scene.lighting().lights.iter().filter(|light| is(light)).count();
+    let glowing: Vec<bool> = scene.materials().iter().map(glows).collect();
+    let triangles = scene.triangles().iter().filter(|(_, material)| glowing[*material as usize]).count();
+    tally(&[
+        ("point", count(|light| matches!(light, Light::Point { .. }))),
+        ("spot", count(|light| matches!(light, Light::Spot { .. }))),
+        ("sun", count(|light| matches!(light, Light::Sun { .. }))),
+        ("glowing triangles", triangles),
+    ])
+}
+
+fn materials(scene: &Scene) -> String {
+    let count = |is: fn(&Material) -> bool| scene.materials().iter().filter(|material| is(material)).count();
+    let textured = |material: &Material| matches!(material.base, Surface::Textured(..));
+    tally(&[
+        ("diffuse", count(|m| m.scattering == Scattering::Diffuse)),
+        ("metallic-roughness", count(|m| matches!(m.scattering, Scattering::MetallicRoughness { .. }))),
+        ("mirrors", count(|m| m.scattering == Scattering::Mirror)),
+        ("glass", count(|m| matches!(m.scattering, Scattering::Glass { .. }))),
+        ("with textures", count(textured)),
+        ("with alpha", count(|m| m.alpha_cutoff.is_some())),
+        ("glowing", count(glows)),
+    ])
+}
+
+fn glows(material: &Material) -> bool {
+    material.emission != Surface::Uniform(Vec3::ZERO)
+}
