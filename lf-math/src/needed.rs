@@ -123,8 +123,8 @@ impl Shadow {
         let below = self.edges(camera);
         let above = below.iter().rev();
         let corners = below.iter().map(|&(p, offset)| [p, least(offset)]);
-        let corners = corners.chain(above.map(|&(p, offset)| [p, most(offset)])).collect();
-        no_steeper(no_steeper(corners, 1.0), -1.0)
+        let corners: Vec<Crossing> = corners.chain(above.map(|&(p, offset)| [p, most(offset)])).collect();
+        no_steeper(&no_steeper(&corners, 1.0), -1.0)
     }
 
     /// Where the disparity's effect bends on the camera plane, from the least crossing that a camera serves to the greatest:
@@ -152,7 +152,7 @@ impl Shadow {
 }
 
 /// The part of a polygon whose slopes are at most 1 (`sign` 1) or at least −1 (`sign` −1): Sutherland & Hodgman 1974.
-fn no_steeper(corners: Vec<Crossing>, sign: f64) -> Vec<Crossing> {
+fn no_steeper(corners: &[Crossing], sign: f64) -> Vec<Crossing> {
     let mut kept = Vec::new();
     for (i, &to) in corners.iter().enumerate() {
         let from = corners[(i + corners.len() - 1) % corners.len()];
