@@ -1,49 +1,77 @@
-//! From scene to slabs and cube maps.
+//! From scene to slabs.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{Vec2, Vec3};
-use lf_math::{
-    Cell, CubeCoord, CubeMap, Face, GeometryError, Image, LightFieldGeometry, Ray, SlabTexels, cube_direction,
-    srgb8_from_linear,
-};
+use lf_math::{Cell, GeometryError, LightFieldGeometry, Ray, SlabTexels, srgb8_from_linear};
 use rayon::prelude::*;
 
+use crate::focus::focus;
 use crate::tracer::{Traced, Tracer};
 
 /// A captured light field.
 #[derive(Debug, Clone)]
 pub struct Capture {
-    /// The slabs as asked for, each with the focal plane that suits what was seen.
+    /// The slabs as asked for, each with the focal plane that suits the scene.
     pub geometry: LightFieldGeometry,
     /// Their texels.
     pub texels: Vec<SlabTexels>,
-    /// How many rays were traced towards the scene (shadow rays not counted).
+    /// How many rays were traced towards the scene for texels (shadow rays not counted).
     pub rays: u64,
 }
 
-/// How often each inverse depth was seen from the camera plane by the rays that pass through the cell.
+/// What the texels of a light field in a scene are, one by one: the only place that says so.
 ///
-/// Bins are `1/z = i·4/(BINS·h)`, h being the cell's smallest half extent: up to a quarter of h, in steps that shift the
-/// paper's 128 texels by 0.01 texel per camera. What is nearer, or behind the plane, only counts as being beyond an end.
-#[derive(Debug, Clone)]
-struct Depths {
-    bin: f64,
-    counts: Vec<u64>,
+/// Each stored ray starts where it leaves the cell ([`LightFieldGeometry::capture_ray`]).
+#[derive(Clone, Copy)]
+pub struct TexelSampler<'a> {
+    tracer: &'a Tracer,
+    geometry: &'a LightFieldGeometry,
+    grid: u32,
 }
 
-/// Number of bins of inverse depth.
-const BINS: usize = 4096;
+impl<'a> TexelSampler<'a> {
+    /// Texels that are the mean of `grid × grid` rays spread over their footprint in (u, v); 0 counts as 1.
+    #[must_use]
+    pub fn new(tracer: &'a Tracer, geometry: &'a LightFieldGeometry, grid: u32) -> Self {
+        Self { tracer, geometry, grid: grid.max(1) }
+    }
 
-/// Traces every sample of every slab, on all threads.
+    /// Rays that one texel takes.
+    #[must_use]
+    pub fn rays(&self) -> u64 {
+        u64::from(self.grid).pow(2)
+    }
+
+    /// The texel of a camera (s, t) of a slab, a position in the geometry's: opaque, 8 bits, sRGB-encoded.
+    ///
+    /// # Panics
+    /// If there is no such slab.
+    #[must_use]
+    pub fn texel(&self, slab: usize, camera: [u32; 2], texel: [u32; 2]) -> [u8; 4] {
+        let radiance = |offset: Vec2| {
+            let ray = self.geometry.capture_ray(slab, index(camera), index(texel) + offset);
+            trace_in_cell_space(self.tracer, self.geometry.cell(), &ray).radiance
+        };
+        opaque(subsamples(self.grid).map(radiance).sum::<Vec3>() / (self.grid * self.grid) as f32)
+    }
+
+    /// Inverse of the depth of what a texel's middle ray meets: 1/m along the face's axis from the camera plane, negative
+    /// behind it, infinite on it, 0 if nothing is met.
+    ///
+    /// # Panics
+    /// If there is no such slab.
+    #[must_use]
+    pub fn inverse_depth(&self, slab: usize, camera: [u32; 2], texel: [u32; 2]) -> f32 {
+        let ray = self.geometry.capture_ray(slab, index(camera), index(texel));
+        inverse_depth(self.tracer, self.geometry, slab, &ray)
+    }
+}
+
+/// Traces every sample of every slab, on all threads, and holds them in memory.
 ///
-/// Each stored ray starts where it leaves the cell ([`LightFieldGeometry::capture_ray`]). A texel is the mean of
-/// `grid × grid` rays spread over its footprint in (u, v); 0 counts as 1. `progress` is told the number of camera images
-/// finished so far, from any thread.
-///
-/// Each slab's focal plane is put at `1 / median(1/z)`, z being the depth of what the rays through the cell meet: the
-/// disparity of least mean absolute error. (Chai et al. 2000 give the harmonic mean of the extremes, the minimax choice;
-/// a single object that touches the camera plane would pull that, or the mean, to zero depth.)
+/// A texel is as [`TexelSampler`] says, the focal planes are those of [`focus`]. `progress` is told the number of camera
+/// images finished so far, from any thread.
 ///
 /// # Errors
 /// If the slabs need more texels than fit in memory addresses.
@@ -53,76 +81,24 @@ pub fn capture_slabs(
     grid: u32,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Capture, GeometryError> {
+    let geometry = focus(tracer, geometry)?;
+    let sampler = TexelSampler::new(tracer, &geometry, grid);
     let done = AtomicU64::new(0);
-    let finished = || progress(done.fetch_add(1, Ordering::Relaxed) + 1);
-    let grid = grid.max(1);
-    let (mut slabs, mut texels, mut rays) = (Vec::new(), Vec::new(), 0);
+    let (mut texels, mut rays) = (Vec::new(), 0);
     for (number, slab) in geometry.slabs().iter().enumerate() {
-        let [cameras_s, cameras_t] = slab.cameras();
-        let [width, height] = slab.resolution();
+        let ([across, down], [width, height]) = (slab.cameras(), slab.resolution());
         let image_len = width as usize * height as usize;
-        let mut all = vec![[0u8; 4]; cameras_s as usize * cameras_t as usize * image_len];
-        let images = all.par_chunks_mut(image_len).enumerate().map(|(index, image)| {
-            let camera = Vec2::new((index as u32 % cameras_s) as f32, (index as u32 / cameras_s) as f32);
-            let depths = capture_image(tracer, geometry, number, camera, grid, image);
-            finished();
-            depths
+        let mut all = vec![[0u8; 4]; across as usize * down as usize * image_len];
+        all.par_chunks_mut(image_len).zip(0..across * down).for_each(|(image, camera)| {
+            for (texel, index) in image.iter_mut().zip(0u32..) {
+                *texel = sampler.texel(number, [camera % across, camera / across], [index % width, index / width]);
+            }
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         });
-        let none = || Depths::new(geometry.cell());
-        let depths = images.reduce(none, Depths::plus);
-        slabs.push(slab.with_focal_depth(depths.focal_depth())?);
-        rays += all.len() as u64 * u64::from(grid * grid);
+        rays += all.len() as u64 * sampler.rays();
         texels.push(SlabTexels::new(slab, all)?);
     }
-    Ok(Capture { geometry: LightFieldGeometry::new(*geometry.cell(), slabs)?, texels, rays })
-}
-
-fn capture_image(
-    tracer: &Tracer,
-    geometry: &LightFieldGeometry,
-    number: usize,
-    camera: Vec2,
-    grid: u32,
-    image: &mut [[u8; 4]],
-) -> Depths {
-    let slab = &geometry.slabs()[number];
-    let width = slab.resolution()[0];
-    let mut depths = Depths::new(geometry.cell());
-    for (index, texel) in image.iter_mut().enumerate() {
-        let center = Vec2::new((index as u32 % width) as f32, (index as u32 / width) as f32);
-        let mut sum = Vec3::ZERO;
-        for offset in subsamples(grid) {
-            let ray = geometry.capture_ray(number, camera, center + offset);
-            let traced = trace_in_cell_space(tracer, geometry.cell(), &ray);
-            depths.add(geometry.cell(), &ray, slab.depth(ray.at(traced.distance)));
-            sum += traced.radiance;
-        }
-        *texel = opaque(sum / (grid * grid) as f32);
-    }
-    depths
-}
-
-/// The environment map of a cell: six faces of `size × size` texels seen from its centre, each texel the mean of
-/// `grid × grid` rays.
-///
-/// # Errors
-/// `size` must be at least 1.
-pub fn capture_cube(tracer: &Tracer, cell: &Cell, size: u32, grid: u32) -> Result<CubeMap, GeometryError> {
-    let grid = grid.max(1);
-    let texel = |face: Face, index: u32| {
-        let center = Vec2::new((index % size) as f32, (index / size) as f32) + 0.5;
-        let radiance = |offset: Vec2| {
-            let direction = cube_direction(CubeCoord { face, uv: (center + offset) / size as f32 });
-            trace_in_cell_space(tracer, cell, &Ray { origin: Vec3::ZERO, direction }).radiance
-        };
-        opaque(subsamples(grid).map(radiance).sum::<Vec3>() / (grid * grid) as f32)
-    };
-    let face = |face: Face| {
-        let texels = (0..size.saturating_mul(size)).into_par_iter().map(|index| texel(face, index)).collect();
-        Image::new(size, size, texels)
-    };
-    let [a, b, c, d, e, f] = Face::ALL.map(face);
-    CubeMap::new([a?, b?, c?, d?, e?, f?])
+    Ok(Capture { geometry, texels, rays })
 }
 
 /// Traces a cell-space ray.
@@ -130,50 +106,26 @@ pub(crate) fn trace_in_cell_space(tracer: &Tracer, cell: &Cell, ray: &Ray) -> Tr
     tracer.trace(cell.world_from_cell(ray.origin).as_vec3(), ray.direction)
 }
 
+/// 1/depth of what a cell-space ray meets, as [`TexelSampler::inverse_depth`] has it.
+pub(crate) fn inverse_depth(tracer: &Tracer, geometry: &LightFieldGeometry, slab: usize, ray: &Ray) -> f32 {
+    let met = tracer.distance(geometry.cell().world_from_cell(ray.origin).as_vec3(), ray.direction);
+    met.map_or(0.0, |distance| 1.0 / geometry.slabs()[slab].depth(ray.at(distance)))
+}
+
+/// Sample indices as the geometry takes them.
+pub(crate) fn index([x, y]: [u32; 2]) -> Vec2 {
+    Vec2::new(x as f32, y as f32)
+}
+
 /// Offsets from a texel's centre, in texels: the centres of `grid × grid` equal parts.
-fn subsamples(grid: u32) -> impl Iterator<Item = Vec2> {
+pub(crate) fn subsamples(grid: u32) -> impl Iterator<Item = Vec2> {
     let part = move |i: u32| (i as f32 + 0.5) / grid as f32 - 0.5;
     (0..grid * grid).map(move |i| Vec2::new(part(i % grid), part(i / grid)))
 }
 
-fn opaque(linear: Vec3) -> [u8; 4] {
+pub(crate) fn opaque(linear: Vec3) -> [u8; 4] {
     let [r, g, b] = srgb8_from_linear(linear);
     [r, g, b, 255]
-}
-
-impl Depths {
-    fn new(cell: &Cell) -> Self {
-        let nearest = 0.25 * f64::from(cell.half_extent().min_element());
-        Self { bin: 1.0 / (nearest * BINS as f64), counts: vec![0; BINS] }
-    }
-
-    /// Counts a ray if it passes through the cell.
-    fn add(&mut self, cell: &Cell, ray: &Ray, depth: f32) {
-        // `ray` starts where it leaves the cell, or beside it if it misses.
-        if cell.contains(ray.origin * (1.0 - 1e-4)) {
-            // What lies behind the plane has a negative inverse depth: below all others.
-            let inverse = if depth > 0.0 { 1.0 / f64::from(depth) } else { 0.0 };
-            self.counts[((inverse / self.bin) as usize).min(BINS - 1)] += 1;
-        }
-    }
-
-    fn plus(mut self, other: Self) -> Self {
-        for (count, more) in self.counts.iter_mut().zip(other.counts) {
-            *count += more;
-        }
-        self
-    }
-
-    /// `1 / median(1/z)`; none (infinity) if nothing was seen, or most of it too far for the first bin.
-    fn focal_depth(&self) -> Option<f32> {
-        let half = self.counts.iter().sum::<u64>().div_ceil(2);
-        let mut below = 0;
-        let median = self.counts.iter().position(|count| {
-            below += count;
-            below >= half
-        });
-        median.filter(|&i| i > 0).map(|i| (1.0 / (self.bin * (i as f64 + 0.5))) as f32)
-    }
 }
 
 #[cfg(test)]
@@ -181,7 +133,7 @@ mod tests {
     use super::*;
     use crate::{Environment, Lighting, Material, SceneBuilder};
     use glam::DVec3;
-    use lf_math::PlanePlacement;
+    use lf_math::{Face, PlanePlacement};
 
     /// A glowing box of half extent 3 around the origin, each face another colour, and a post beside the cell.
     fn box_scene(post: bool) -> Tracer {
@@ -276,16 +228,5 @@ mod tests {
         };
         let (one, three) = (run(1), run(3));
         assert_eq!((one.geometry, one.texels), (three.geometry, three.texels));
-    }
-
-    #[test]
-    fn cube_faces_look_where_they_should() {
-        let cube = capture_cube(&box_scene(false), geometry().cell(), 4, 2).unwrap();
-        for face in Face::ALL {
-            let k = f32::from(face.index() + 1) / 8.0;
-            let expected = srgb8_from_linear(Vec3::new(k, 1.0 - k, 0.25));
-            let image = &cube.faces()[usize::from(face.index())];
-            assert!(image.texels().iter().all(|texel| texel[..3] == expected));
-        }
     }
 }

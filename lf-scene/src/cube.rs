@@ -1,0 +1,100 @@
+//! Cube maps of a scene: what is seen from a point in all directions.
+
+use glam::{Vec2, Vec3};
+use lf_math::{Cell, CubeCoord, CubeMap, Face, GeometryError, Image, cube_direction};
+use rayon::prelude::*;
+
+use crate::capture::{opaque, subsamples};
+use crate::tracer::{Traced, Tracer};
+
+/// Radiance and distance in all directions around a point: six faces of `size × size` texels, in the order and the
+/// orientation of [`CubeMap`], on all threads.
+///
+/// `point` is in world space, metres. A texel's radiance, linear, is the mean of `grid × grid` rays spread over its footprint (0
+/// counts as 1). Its distance, metres from the point, is that of the ray through its middle: a mean of distances would be
+/// a place where nothing is. It is infinite if nothing is met.
+///
+/// # Errors
+/// `size` must be at least 1.
+pub fn trace_cube(tracer: &Tracer, point: Vec3, size: u32, grid: u32) -> Result<[Image<Traced>; 6], GeometryError> {
+    let grid = grid.max(1);
+    let texel = |face: Face, index: u32| {
+        let middle = Vec2::new((index % size) as f32, (index / size) as f32) + 0.5;
+        let towards = |offset: Vec2| cube_direction(CubeCoord { face, uv: (middle + offset) / size as f32 });
+        let radiance = |offset| tracer.trace(point, towards(offset)).radiance;
+        let center = towards(Vec2::ZERO);
+        Traced {
+            radiance: subsamples(grid).map(radiance).sum::<Vec3>() / (grid * grid) as f32,
+            distance: tracer.distance(point, center).map_or(f32::INFINITY, |t| t * center.length()),
+        }
+    };
+    let face = |face: Face| {
+        let texels = (0..size.saturating_mul(size)).into_par_iter().map(|index| texel(face, index)).collect();
+        Image::new(size, size, texels)
+    };
+    let [a, b, c, d, e, f] = Face::ALL.map(face);
+    Ok([a?, b?, c?, d?, e?, f?])
+}
+
+/// The environment map of a cell: six faces of `size × size` texels seen from its centre, each texel the mean of
+/// `grid × grid` rays.
+///
+/// # Errors
+/// `size` must be at least 1.
+pub fn capture_cube(tracer: &Tracer, cell: &Cell, size: u32, grid: u32) -> Result<CubeMap, GeometryError> {
+    let faces = trace_cube(tracer, cell.center().as_vec3(), size, grid)?;
+    CubeMap::new(faces.map(|face| face.map(|texel: Traced| opaque(texel.radiance))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Lighting, Material, SceneBuilder};
+    use glam::DVec3;
+
+    /// A glowing box from −2 to 4 on each axis, each wall another colour.
+    fn room() -> Tracer {
+        let mut builder = SceneBuilder::default();
+        for face in Face::ALL {
+            let k = f32::from(face.index() + 1) / 8.0;
+            let material = builder.material(Material::glowing(Vec3::new(k, 1.0 - k, 0.25)));
+            let corner = Vec3::ONE + face.vector(Vec2::splat(-3.0), 3.0 * face.sign());
+            let (u, v) = (face.vector(Vec2::X * 6.0, 0.0), face.vector(Vec2::Y * 6.0, 0.0));
+            builder.parallelogram(corner, u, v, Vec2::ONE, material);
+        }
+        Tracer::new(builder.build("room", Lighting { lights: vec![], ambient: Vec3::ZERO, sky: Vec3::ZERO }).unwrap())
+    }
+
+    /// Closed form: the wall that a ray leads to, and how far it is.
+    #[test]
+    fn texels_hold_radiance_and_distance_from_any_point() {
+        let (tracer, point, size) = (room(), Vec3::new(0.5, -1.0, 3.0), 9);
+        for grid in [1, 2] {
+            for (face, image) in Face::ALL.into_iter().zip(trace_cube(&tracer, point, size, grid).unwrap()) {
+                for (index, texel) in image.texels().iter().enumerate() {
+                    let middle = Vec2::new((index as u32 % size) as f32, (index as u32 / size) as f32) + 0.5;
+                    let direction = cube_direction(CubeCoord { face, uv: middle / size as f32 }).normalize();
+                    let walls = (Vec3::ONE + 3.0 * direction.signum() - point) / direction;
+                    let expected = walls.min_element();
+                    assert!((texel.distance - expected).abs() < 1e-5 * expected, "{texel:?} {expected}");
+                    let axis = (0..3).find(|&i| walls[i] == expected).unwrap();
+                    let k = f32::from(Face::dominant(Vec3::AXES[axis] * direction).unwrap().index() + 1) / 8.0;
+                    let seen = (texel.radiance - Vec3::new(k, 1.0 - k, 0.25)).abs().max_element();
+                    assert!(grid > 1 || seen < 1e-6, "{texel:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn cube_faces_look_where_they_should() {
+        let cell = Cell::cube(DVec3::ONE, 1.0).unwrap();
+        let cube = capture_cube(&room(), &cell, 4, 2).unwrap();
+        for face in Face::ALL {
+            let k = f32::from(face.index() + 1) / 8.0;
+            let expected = opaque(Vec3::new(k, 1.0 - k, 0.25));
+            assert!(cube.faces()[usize::from(face.index())].texels().iter().all(|texel| *texel == expected));
+        }
+        assert!(capture_cube(&room(), &cell, 0, 1).is_err());
+    }
+}
