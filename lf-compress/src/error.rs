@@ -73,3 +73,10 @@ pub enum PackError {
         texels: usize,
     },
 }
+
+pub(crate) fn check_buffer(expected: u64, found: usize) -> Result<(), PackError> {
+    if expected == found as u64 {
+        return Ok(());
+    }
+    Err(PackError::BufferLength { expected: usize::try_from(expected).unwrap_or(usize::MAX), found })
+}

@@ -1,5 +1,6 @@
 //! Between encoded tiles and files: each tile packed as suits it, and unpacked again.
 
+use std::borrow::Cow;
 use std::io::{Cursor, Read, Seek, Write};
 use std::path::Path;
 
@@ -9,7 +10,7 @@ use lf_format::{
 };
 use rayon::prelude::*;
 
-use crate::error::PackError;
+use crate::error::{PackError, check_buffer};
 use crate::packed::{PackedLightField, tile_shape};
 use crate::tile::{self, TileError};
 use crate::{bc1, zstd_tile};
@@ -62,18 +63,14 @@ impl PackedLightField {
     ///
     /// # Errors
     /// See [`Writer`].
-    pub fn write<W: Write + Seek>(&self, writer: &mut Writer<W>) -> Result<(), PackError> {
+    pub fn write<'a, W: Write + Seek>(&'a self, writer: &mut Writer<W>) -> Result<(), PackError> {
         for (slab, tiling) in self.tilings().iter().enumerate() {
             let stored: Vec<(u32, &Vec<u8>)> = tiling.stored_tiles().zip(self.tiles(slab)).collect();
             for batch in stored.chunks(BATCH) {
-                let pack = |&(tile, raw): &(u32, &Vec<u8>)| pack(raw, tiling, tile);
+                let pack = |&(tile, raw): &(u32, &'a Vec<u8>)| pack_tile(raw, tiling, tile);
                 let packed = batch.par_iter().map(pack).collect::<Result<Vec<_>, _>>()?;
-                for ((_, raw), (packing, packed)) in batch.iter().zip(packed) {
-                    if packed.len() < raw.len() {
-                        writer.tile(packing, &packed)?;
-                    } else {
-                        writer.tile(Packing::None, raw)?;
-                    }
+                for (packing, bytes) in packed {
+                    writer.tile(packing, &bytes)?;
                 }
             }
         }
@@ -114,9 +111,18 @@ fn take_tiles(file: &Structure) -> Result<(), FormatError> {
     file.budget().take("the unpacked light field", bytes)
 }
 
-/// The smaller of the tile codec's result and zstd's: surroundings that repeat themselves to the bit, as rendered tiles
-/// and bricks do, are better matched than predicted.
-fn pack(raw: &[u8], tiling: &SlabTiling, tile: u32) -> Result<(Packing, Vec<u8>), PackError> {
+/// Packs a raw tile as it is stored in files: by the [tile codec](crate::tile) or by zstd, whichever is smaller, or not at all
+/// if neither shrinks it. Surroundings that repeat themselves to the bit, as rendered tiles and bricks do, are better matched
+/// than predicted.
+///
+/// # Errors
+/// If zstd or the tile codec fails, for lack of memory say.
+pub fn pack_tile<'a>(raw: &'a [u8], tiling: &SlabTiling, tile: u32) -> Result<(Packing, Cow<'a, [u8]>), PackError> {
+    let (packing, packed) = smallest(raw, tiling, tile)?;
+    Ok(if packed.len() < raw.len() { (packing, packed.into()) } else { (Packing::None, raw.into()) })
+}
+
+fn smallest(raw: &[u8], tiling: &SlabTiling, tile: u32) -> Result<(Packing, Vec<u8>), PackError> {
     let matched = |level| zstd_tile::pack(raw, level).map_err(PackError::Zstd);
     let quick = matched(zstd_tile::LEVEL)?;
     if tiling.encoding() != TexelEncoding::Bc1 {
@@ -191,11 +197,4 @@ pub fn decode_into(raw: &[u8], tiling: &SlabTiling, tile: u32, out: &mut [[u8; 4
         }
         other => Err(PackError::Encoding(other)),
     }
-}
-
-fn check_buffer(expected: u64, found: usize) -> Result<(), PackError> {
-    if expected == found as u64 {
-        return Ok(());
-    }
-    Err(PackError::BufferLength { expected: usize::try_from(expected).unwrap_or(usize::MAX), found })
 }

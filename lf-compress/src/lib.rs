@@ -6,7 +6,8 @@
 //!   container, uploaded to a GPU as it is or decoded again.
 //! * [`tile`]: lossless packing of BC1 tiles for the file, and blocks that pack better.
 //!
-//! Tiles of other encodings are packed by zstd, one frame each.
+//! Tiles of other encodings are packed by zstd, one frame each. Light fields too large for memory are made tile by tile:
+//! [`tile_picture`], [`encode_tile`] and [`pack_tile`] are the steps.
 
 #![forbid(unsafe_code)]
 
@@ -24,11 +25,11 @@ mod zstd_tile;
 
 pub use check::check_tile;
 pub use error::PackError;
-pub use file::{decode_into, unpack_into};
+pub use file::{decode_into, pack_tile, unpack_into};
 /// The container crate, whose types the packed light field speaks.
 pub use lf_format as format;
-pub use packed::{PackOptions, PackedLightField};
-pub use picture::rgba16f;
+pub use packed::{PackOptions, PackedLightField, encode_linear_tile, encode_tile};
+pub use picture::{Texel, rgba16f, tile_picture};
 pub use validate::{Finding, Severity, validate};
 
 #[cfg(doctest)]

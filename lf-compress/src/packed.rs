@@ -6,7 +6,7 @@ use lf_math::{GeometryError, Image, LightFieldGeometry, SlabTexels};
 use rayon::prelude::*;
 
 use crate::bc1::{self, EncodeOptions, Quality};
-use crate::error::PackError;
+use crate::error::{PackError, check_buffer};
 use crate::picture::{self, Texel};
 use crate::tile::{self, RdoOptions, TileError, TileShape};
 use crate::volume::{VolumeLayout, cameras_per_tile};
@@ -58,10 +58,8 @@ impl PackedLightField {
         encoding: TexelEncoding,
         options: &PackOptions,
     ) -> Result<Self, PackError> {
-        Self::encode_tiles(geometry, texels, encoding, |picture, tiling, tile| match encoding {
-            TexelEncoding::Bc1 => encode_bc1(picture, tiling, tile, options),
-            TexelEncoding::Rgba8 => Ok(picture.texels().as_flattened().to_vec()),
-            other => Err(PackError::Encoding(other)),
+        Self::encode_tiles(geometry, texels, encoding, |picture, tiling, tile| {
+            encode_tile(picture, tiling, tile, options)
         })
     }
 
@@ -70,12 +68,7 @@ impl PackedLightField {
     /// # Errors
     /// As [`Self::encode`]; also if a value is not finite.
     pub fn encode_linear(geometry: LightFieldGeometry, texels: &[SlabTexels<[f16; 3]>]) -> Result<Self, PackError> {
-        if texels.iter().flat_map(SlabTexels::texels).flatten().any(|value| !value.is_finite()) {
-            return Err(PackError::NotFinite);
-        }
-        Self::encode_tiles(geometry, texels, TexelEncoding::Rgb16F, |picture, _, _| {
-            Ok(picture.texels().iter().flatten().flat_map(|value| value.to_le_bytes()).collect())
-        })
+        Self::encode_tiles(geometry, texels, TexelEncoding::Rgb16F, |picture, _, _| encode_linear_tile(picture))
     }
 
     fn encode_tiles<T: Texel>(
@@ -96,7 +89,8 @@ impl PackedLightField {
         }
         let encode_slab = |(tiling, texels): (&SlabTiling, &SlabTexels<T>)| {
             let stored: Vec<u32> = tiling.stored_tiles().collect();
-            let tile = |tile| encode(&picture::of_tile(texels, tiling, tile), tiling, tile);
+            let picture = |tile| picture::tile_picture(tiling, tile, |camera| texels.image(camera));
+            let tile = |tile| encode(&picture(tile), tiling, tile);
             stored.into_par_iter().map(tile).collect::<Result<Vec<_>, _>>()
         };
         let tiles = tilings.iter().zip(texels).map(encode_slab).collect::<Result<_, _>>()?;
@@ -189,6 +183,38 @@ type Decode<T> = fn(&[u8], TexelEncoding, [u32; 2]) -> Result<Image<T>, PackErro
 pub(crate) fn tile_shape(tiling: &SlabTiling, tile: u32) -> Result<TileShape, TileError> {
     let [columns, rows] = tiling.block_windows(tile);
     TileShape::windowed(&columns, &rows)
+}
+
+/// Encodes the picture of a tile as `tiling` says: the bytes of the raw tile. On all threads.
+///
+/// # Errors
+/// [`PackError::Encoding`] unless the encoding is for 8-bit texels; [`PackError::BufferLength`] if the picture has another
+/// size than the [tile](SlabTiling::tile_size).
+pub fn encode_tile(
+    picture: &Image<[u8; 4]>,
+    tiling: &SlabTiling,
+    tile: u32,
+    options: &PackOptions,
+) -> Result<Vec<u8>, PackError> {
+    let [width, height] = tiling.tile_size(tile);
+    check_buffer(u64::from(width) * u64::from(height), picture.texels().len())?;
+    match tiling.encoding() {
+        TexelEncoding::Bc1 => encode_bc1(picture, tiling, tile, options),
+        TexelEncoding::Rgba8 => Ok(picture.texels().as_flattened().to_vec()),
+        other => Err(PackError::Encoding(other)),
+    }
+}
+
+/// The bytes of a raw tile of half floats, given its picture.
+///
+/// # Errors
+/// [`PackError::NotFinite`] if a value is not finite.
+pub fn encode_linear_tile(picture: &Image<[f16; 3]>) -> Result<Vec<u8>, PackError> {
+    let values = picture.texels().as_flattened();
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err(PackError::NotFinite);
+    }
+    Ok(values.iter().flat_map(|value| value.to_le_bytes()).collect())
 }
 
 fn encode_bc1(

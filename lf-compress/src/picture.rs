@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use half::f16;
 use lf_format::{CameraPlace, SlabTiling, TexelEncoding};
-use lf_math::{Image, ImageWindow, SlabTexels};
+use lf_math::{Image, ImageWindow};
 
-/// A texel as it is stored.
-pub(crate) trait Texel: Copy + Send + Sync {
+/// A texel as slabs store it: 8-bit RGBA, or linear half-float RGB.
+pub trait Texel: Copy + Send + Sync {
     /// What stands for cameras that are not there.
     const ZERO: Self;
     /// The texel without what is not stored.
@@ -31,13 +31,18 @@ impl Texel for [f16; 3] {
     }
 }
 
-/// The picture of a tile: the windows of its cameras, in whole blocks, what lies beyond an image repeating its nearest texel.
-pub(crate) fn of_tile<T: Texel>(texels: &SlabTexels<T>, tiling: &SlabTiling, tile: u32) -> Image<T> {
+/// The picture of a tile: the windows of its cameras, as `image` has them, in whole blocks; what lies beyond a window repeats its
+/// nearest texel, cameras without one are zero.
+#[must_use]
+pub fn tile_picture<'a, T: Texel + 'a>(
+    tiling: &SlabTiling,
+    tile: u32,
+    image: impl Fn([u32; 2]) -> Option<ImageWindow<'a, T>>,
+) -> Image<T> {
     let [width, height] = tiling.tile_size(tile);
     let mut picture = Image::filled(width, height, T::ZERO);
     for camera in cameras_of(tiling, tile) {
-        let (Some(CameraPlace { corner, window, .. }), Some(image)) = (tiling.place(camera), texels.image(camera))
-        else {
+        let (Some(CameraPlace { corner, window, .. }), Some(image)) = (tiling.place(camera), image(camera)) else {
             continue;
         };
         let [u, v] = window.map(|range| range.start..range.end.next_multiple_of(4));
