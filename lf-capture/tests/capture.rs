@@ -8,9 +8,9 @@ use glam::{DVec3, Vec2, Vec3};
 use lf_capture::{CaptureError, Journal, Options, Outcome, Plan, Progress, Shard, capture, write_files};
 use lf_compress::{PackOptions, PackedLightField};
 use lf_format::{Container, Limits, Metadata, TexelEncoding};
-use lf_ibr::{Environment, SlabField};
+use lf_ibr::{Environment as _, SlabField};
 use lf_math::{Cell, Face, LightFieldGeometry, PlanePlacement, Ray};
-use lf_scene::{Lighting, Material, SceneBuilder, TexelSampler, Tracer, capture_slabs, museum};
+use lf_scene::{Environment, Lighting, Material, SceneBuilder, TexelSampler, Tracer, capture_slabs, museum};
 use tempfile::TempDir;
 
 fn options(encoding: TexelEncoding) -> Options {
@@ -294,7 +294,7 @@ fn glowing_box(strength: f32) -> lf_scene::Scene {
             material,
         );
     }
-    builder.build("box", Lighting { lights: vec![], ambient: Vec3::ZERO, sky: Vec3::ZERO }).unwrap()
+    builder.build("box", Lighting::from_environment(Environment::BLACK)).unwrap()
 }
 
 /// Closed form: the walls of a box.
@@ -326,7 +326,7 @@ fn depth_is_the_inverse_distance_from_the_camera_plane() {
     let mut builder = SceneBuilder::default();
     let material = builder.material(Material::glowing(Vec3::ONE));
     builder.cuboid(Vec3::splat(50.0), Vec3::splat(51.0), material);
-    let lighting = Lighting { lights: vec![], ambient: Vec3::ZERO, sky: Vec3::ONE };
+    let lighting = Lighting::from_environment(Environment::Sky(Vec3::ONE));
     let open = Tracer::new(builder.build("open", lighting).unwrap());
     let cell = Cell::cube(DVec3::ZERO, 1.0).unwrap();
     let field = LightFieldGeometry::around(cell, PlanePlacement::CellFaces, 2, 4).unwrap();

@@ -7,8 +7,8 @@ use anyhow::{Context, Result, bail};
 use glam::Vec3;
 use lf_math::{Cell, TriangleMesh};
 use lf_scene::{
-    EMBEDDED, Environment, EnvironmentMap, ImportOptions, Imported, Lighting, Scene, SceneCamera, Tracer, find_free_space,
-    import_environment, import_gltf, import_obj, is_free, reflectors,
+    EMBEDDED, Environment, EnvironmentMap, ImportOptions, Imported, Lighting, Scene, SceneCamera, Tracer,
+    find_free_space, import_environment, import_gltf, import_obj, is_free, reflectors,
 };
 
 use crate::scene_args::{LightArgs, SceneArgs};

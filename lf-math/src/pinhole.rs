@@ -45,8 +45,8 @@ impl Pinhole {
         height: u32,
     ) -> Result<Self, GeometryError> {
         let length = forward.length();
-        let forward =
-            normalized(forward).ok_or(GeometryError::NotPositive { what: "length of the view direction", value: length })?;
+        let forward = normalized(forward)
+            .ok_or(GeometryError::NotPositive { what: "length of the view direction", value: length })?;
         let right = normalized(forward.cross(up)).unwrap_or(Vec3::Z * -forward.y.signum());
         let tan_half_y = positive("tangent of half the field of view", libm::tanf(0.5 * fov_y))?;
         positive("what the field of view leaves of a half circle", core::f32::consts::PI - fov_y)?;

@@ -49,7 +49,7 @@ pub fn capture_cube(tracer: &Tracer, cell: &Cell, size: u32, grid: u32) -> Resul
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Lighting, Material, SceneBuilder};
+    use crate::{Environment, Lighting, Material, SceneBuilder};
     use glam::DVec3;
 
     /// A glowing box from −2 to 4 on each axis, each wall another colour.
@@ -62,7 +62,7 @@ mod tests {
             let (u, v) = (face.vector(Vec2::X * 6.0, 0.0), face.vector(Vec2::Y * 6.0, 0.0));
             builder.parallelogram(corner, u, v, Vec2::ONE, material);
         }
-        Tracer::new(builder.build("room", Lighting { lights: vec![], ambient: Vec3::ZERO, sky: Vec3::ZERO }).unwrap())
+        Tracer::new(builder.build("room", Lighting::from_environment(Environment::BLACK)).unwrap())
     }
 
     /// Closed form: the wall that a ray leads to, and how far it is.

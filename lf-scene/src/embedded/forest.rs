@@ -44,7 +44,8 @@ pub fn cell() -> Cell {
 /// A square of ground, and four walls of 12 m around it.
 fn ground(builder: &mut SceneBuilder) {
     let checker = Pattern::Checker([Vec3::new(0.3, 0.4, 0.15), Vec3::new(0.45, 0.4, 0.25)]);
-    let fields = [Vec3::new(0.2, 0.35, 0.2), Vec3::new(0.6, 0.6, 0.5), Vec3::new(0.5, 0.3, 0.15), Vec3::new(0.3, 0.4, 0.55)];
+    let fields =
+        [Vec3::new(0.2, 0.35, 0.2), Vec3::new(0.6, 0.6, 0.5), Vec3::new(0.5, 0.3, 0.15), Vec3::new(0.3, 0.4, 0.55)];
     let ground = builder.material(Material::patterned(checker));
     let backdrop = builder.material(Material::patterned(Pattern::Fields(fields, 1.0)));
     let (edge, height) = (2.0 * BACKDROP, 12.0);
@@ -61,7 +62,8 @@ fn ground(builder: &mut SceneBuilder) {
 
 /// Columns on a spiral: any two that follow each other stand at the golden angle.
 fn columns(builder: &mut SceneBuilder) {
-    let colors = [Vec3::new(0.85, 0.8, 0.7), Vec3::new(0.7, 0.12, 0.08), Vec3::new(0.08, 0.08, 0.1), Vec3::new(0.8, 0.65, 0.1)];
+    let colors =
+        [Vec3::new(0.85, 0.8, 0.7), Vec3::new(0.7, 0.12, 0.08), Vec3::new(0.08, 0.08, 0.1), Vec3::new(0.8, 0.65, 0.1)];
     let colors = colors.map(|color| builder.material(Material::diffuse(color)));
     let (near, far) = DISTANCES;
     for i in 0..COLUMNS {

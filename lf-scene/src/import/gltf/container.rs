@@ -96,7 +96,10 @@ fn parse(json: &[u8], budget: &mut Budget) -> Result<Document, ImportError> {
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     for index in primitives.flat_map(|primitive| primitive.attributes.values()) {
         if index.value() >= root.accessors.len() {
-            return Err(ImportError::malformed(PLACE, format!("an attribute names accessor {index}, which is missing")));
+            return Err(ImportError::malformed(
+                PLACE,
+                format!("an attribute names accessor {index}, which is missing"),
+            ));
         }
     }
     Document::from_json(root).map_err(|error| match error {

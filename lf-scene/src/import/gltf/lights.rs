@@ -118,6 +118,9 @@ fn sun_direction(document: &Document, notes: &mut Notes) -> Option<Vec3> {
         normalized(Vec3::new(number(0)?, number(1)?, number(2)?))
     };
     let suns: Vec<Vec3> = emitters.iter().filter_map(direction).collect();
-    notes.count("emitters of asset.extras are not used; give an environment in their place", emitters.len() - suns.len());
+    notes.count(
+        "emitters of asset.extras are not used; give an environment in their place",
+        emitters.len() - suns.len(),
+    );
     suns.first().copied()
 }

@@ -91,7 +91,8 @@ impl Materials<'_> {
         }
         self.notes.count("weakly transmissive materials are shown opaque", usize::from(transmission > 0.0));
         let other_ior = material.ior().is_some_and(|ior| ior != DEFAULT_IOR);
-        self.notes.count("opaque materials have an index of refraction, which is taken for 1.5", usize::from(other_ior));
+        self.notes
+            .count("opaque materials have an index of refraction, which is taken for 1.5", usize::from(other_ior));
         let texture = match pbr.metallic_roughness_texture() {
             Some(info) => self.textures.get(&info, ColorEncoding::Linear, self.notes, self.budget)?,
             None => None,
@@ -135,7 +136,8 @@ impl Materials<'_> {
         }
         let first = all.first().copied().unwrap_or(Mapping { set: 0, transform: Affine2::IDENTITY, ends: false });
         let others = all.iter().filter(|m| (m.set, m.transform) != (first.set, first.transform)).count();
-        self.notes.count("textures use the texture coordinates of their material's first one instead of their own", others);
+        self.notes
+            .count("textures use the texture coordinates of their material's first one instead of their own", others);
         Ok(Mapping { ends: all.iter().any(|mapping| mapping.ends), ..first })
     }
 

@@ -52,10 +52,13 @@ impl Meshes<'_> {
         let triangles = triangles(primitive.mode(), &indices);
         let size = size_of::<([Vertex; 3], u32)>() as u64;
         budget.take("the triangles", triangles.len() as u64, size)?;
-        notes.count("vertex indices are left over", indices.len().saturating_sub(match primitive.mode() {
-            Mode::Triangles => 3 * triangles.len(),
-            _ => triangles.len() + 2,
-        }));
+        notes.count(
+            "vertex indices are left over",
+            indices.len().saturating_sub(match primitive.mode() {
+                Mode::Triangles => 3 * triangles.len(),
+                _ => triangles.len() + 2,
+            }),
+        );
         // A mirroring transform turns triangles inside out.
         let mirrored = world_from_node.determinant() < 0.0;
         for [a, b, c] in triangles {
@@ -74,7 +77,8 @@ impl Meshes<'_> {
             notes.add("primitives of points or lines are left out");
             return false;
         }
-        let read = |semantic: &Semantic| matches!(semantic, Semantic::Positions | Semantic::Normals | Semantic::TexCoords(_));
+        let read =
+            |semantic: &Semantic| matches!(semantic, Semantic::Positions | Semantic::Normals | Semantic::TexCoords(_));
         let mut attributes = primitive.attributes().filter(|(semantic, _)| read(semantic));
         if !(attributes.all(|(_, accessor)| is_plain(&accessor)) && primitive.indices().is_none_or(|a| is_plain(&a))) {
             notes.add("primitives have sparse or compressed numbers and are left out");
@@ -84,8 +88,14 @@ impl Meshes<'_> {
             notes.add("primitives have no positions and are left out");
             return false;
         }
-        notes.count("primitives have vertex colours, which are not used", usize::from(primitive.get(&Semantic::Colors(0)).is_some()));
-        notes.count("primitives have morph targets, which are not used", usize::from(primitive.morph_targets().next().is_some()));
+        notes.count(
+            "primitives have vertex colours, which are not used",
+            usize::from(primitive.get(&Semantic::Colors(0)).is_some()),
+        );
+        notes.count(
+            "primitives have morph targets, which are not used",
+            usize::from(primitive.morph_targets().next().is_some()),
+        );
         true
     }
 }

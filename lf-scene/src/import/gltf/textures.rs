@@ -31,7 +31,10 @@ impl Textures<'_> {
         budget: &mut Budget,
     ) -> Result<Option<Arc<Texture>>, ImportError> {
         let sampler = info.texture().sampler();
-        notes.count("textures ask for texels without interpolation", usize::from(sampler.mag_filter() == Some(MagFilter::Nearest)));
+        notes.count(
+            "textures ask for texels without interpolation",
+            usize::from(sampler.mag_filter() == Some(MagFilter::Nearest)),
+        );
         let Some(source) = info.texture().source() else {
             notes.add("textures have neither a PNG nor a JPEG picture and are left out");
             return Ok(None);

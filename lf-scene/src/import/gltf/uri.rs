@@ -16,12 +16,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 );
 
 /// The bytes that a URI stands for. Files must lie in the scene's folder or below: a scene from a stranger reads nothing else.
-pub(super) fn load(
-    place: &str,
-    uri: &str,
-    folder: Option<&Path>,
-    budget: &mut Budget,
-) -> Result<Vec<u8>, ImportError> {
+pub(super) fn load(place: &str, uri: &str, folder: Option<&Path>, budget: &mut Budget) -> Result<Vec<u8>, ImportError> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (_, text) = data
             .split_once(";base64,")
@@ -31,7 +26,9 @@ pub(super) fn load(
     }
     let shown: String = uri.chars().take(80).collect();
     let path = inside(uri).ok_or_else(|| {
-        let problem = format!("{shown:?} does not name a file in the scene's folder; move it there and name it by a relative path");
+        let problem = format!(
+            "{shown:?} does not name a file in the scene's folder; move it there and name it by a relative path"
+        );
         ImportError::malformed(place, problem)
     })?;
     let folder = folder.ok_or_else(|| ImportError::malformed(place, format!("{shown:?} is outside of the file")))?;
@@ -69,7 +66,8 @@ mod tests {
     fn paths_stay_in_the_folder() {
         assert_eq!(inside("textures/a%20wall.png"), Some(PathBuf::from("textures/a wall.png")));
         assert_eq!(inside("./a.bin"), Some(PathBuf::from("./a.bin")));
-        let outside = ["../x", "a/../../x", "/etc/passwd", "%2e%2e/x", "file:///x", "C:x", "http://x/y", "", ".", "a%zz", "a%2"];
+        let outside =
+            ["../x", "a/../../x", "/etc/passwd", "%2e%2e/x", "file:///x", "C:x", "http://x/y", "", ".", "a%zz", "a%2"];
         for uri in outside.into_iter().chain(["a%00b", "%ff"]) {
             assert_eq!(inside(uri), None, "{uri}");
         }
