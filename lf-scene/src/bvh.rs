@@ -115,7 +115,8 @@ impl TriangleBvh {
             return None;
         }
         let to_one = power_of_two(-exponent(largest));
-        let (origin, direction) = (Vec3A::from(origin) * self.scale, Vec3A::from(direction) * to_one);
+        // Adding zero turns −0 into 0: the structure takes the former for a negative direction in one place only.
+        let (origin, direction) = (Vec3A::from(origin) * self.scale, Vec3A::from(direction) * to_one + 0.0);
         let given_from_scaled = to_one / self.scale;
         let ray = Ray::new(origin, direction, 0.0, farthest / given_from_scaled);
         origin.is_finite().then(|| ScaledRay { ray, sheared: ShearedRay::new(origin, direction), given_from_scaled })
@@ -263,6 +264,20 @@ mod tests {
                 assert_eq!((one.triangle, one.shares, one.t * scale), (other.triangle, other.shares, other.t));
                 let third = scaled.nearest(origin * scale, direction * scale, ALL).unwrap();
                 assert_eq!((one.triangle, one.shares, one.t), (third.triangle, third.shares, third.t));
+            }
+        }
+    }
+
+    #[test]
+    fn zeros_of_either_sign_are_the_same() {
+        let bvh = TriangleBvh::new(cube().into_iter());
+        for direction in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]) {
+            for direction in [direction, direction * Vec3::new(-1.0, 1.0, -1.0), -direction] {
+                assert_eq!(
+                    bvh.nearest(Vec3::splat(0.1), direction, ALL).map(|hit| hit.t > 0.8),
+                    Some(true),
+                    "{direction:?}"
+                );
             }
         }
     }

@@ -7,8 +7,9 @@ use crate::distribution::Distribution;
 use crate::environment::Environment;
 use crate::material::luminance;
 use crate::random::Random;
+use crate::rounded::RoundedPoint;
 use crate::scene::Scene;
-use crate::surface_point::{SurfacePoint, lifted, point_on, uv_on};
+use crate::surface_point::{SurfacePoint, uv_on};
 
 /// How often light is looked for where. The environment and the glowing triangles get half of the picks each, if there are
 /// both; a triangle in proportion to its area times the mean luminance of its material; a point on it uniformly.
@@ -30,8 +31,8 @@ pub(crate) struct Place {
     pub(crate) radiance: Vec3,
     /// How densely the direction is picked, 1/sr.
     pub(crate) pdf: f32,
-    /// The point, its surface's side towards the lit point, and its triangle; `None` is infinitely far.
-    pub(crate) point: Option<(Vec3, usize)>,
+    /// The point, and where a ray to it may end; `None` is infinitely far.
+    pub(crate) point: Option<(RoundedPoint, Vec3)>,
 }
 
 impl Emitters {
@@ -62,8 +63,8 @@ impl Emitters {
     }
 
     /// How densely [`Self::pick`] picks the direction to a point of a surface that is met at a distance, 1/sr.
-    pub(crate) fn pdf_of_surface(&self, scene: &Scene, point: &SurfacePoint, distance: f32) -> f32 {
-        let density = self.density[scene.triangles()[point.triangle].1 as usize];
+    pub(crate) fn pdf_of_surface(&self, point: &SurfacePoint, distance: f32) -> f32 {
+        let density = self.density[point.material_number as usize];
         density * distance * distance / point.cosine_to_viewer()
     }
 
@@ -94,16 +95,16 @@ impl Emitters {
         if surface.is_hole(uv) {
             return None;
         }
-        let (point, error) = point_on(positions, shares);
-        let (normal, to) = (plane_normal(positions), point - lit);
+        let point = RoundedPoint::new(positions, shares);
+        let (normal, to) = (plane_normal(positions), point.position - lit);
         let (distance, towards) = (to.length(), lf_math::normalized(to)?);
         let cosine = -normal.dot(towards);
         if cosine == 0.0 || (cosine < 0.0 && !surface.double_sided) {
             return None;
         }
         let pdf = self.density[*material as usize] * distance * distance / cosine.abs();
-        let point = lifted(point, error, if cosine < 0.0 { -normal } else { normal });
-        Some(Place { towards, radiance: surface.emission.color(uv), pdf, point: Some((point, triangle)) })
+        let end = point.lifted(if cosine < 0.0 { -normal } else { normal });
+        Some(Place { towards, radiance: surface.emission.color(uv), pdf, point: Some((point, end)) })
     }
 }
 

@@ -30,6 +30,7 @@ mod quality;
 mod random;
 pub mod reference;
 pub mod reflectors;
+mod rounded;
 mod scene;
 mod surface_point;
 mod tracer;

@@ -66,7 +66,7 @@ impl Tracer {
                 return radiance;
             }
             direction = scattered.towards;
-            next = self.nearest(point.launch(direction), direction, Some(point.triangle));
+            next = self.nearest(point.launch(direction), direction, Some(&point.place));
         }
         radiance + path.throughput * self.background(direction, path.pdf)
     }
@@ -76,7 +76,7 @@ impl Tracer {
         let emission = point.emission();
         match pdf {
             Some(pdf) if emission != Vec3::ZERO => {
-                emission * heuristic(pdf, self.emitters().pdf_of_surface(self.scene(), point, distance))
+                emission * heuristic(pdf, self.emitters().pdf_of_surface(point, distance))
             }
             _ => emission,
         }
@@ -103,11 +103,11 @@ impl Tracer {
     fn direct_light(&self, point: &SurfacePoint, random: &mut Random) -> Vec3 {
         let lights = self.scene().lighting().lights.iter();
         let from_lights: Vec3 =
-            lights.filter_map(|light| light.at(point.position)).map(|light| self.light_from(&light, point)).sum();
+            lights.filter_map(|light| light.at(point.place.position)).map(|light| self.light_from(&light, point)).sum();
         if self.emitters().is_empty() {
             return from_lights;
         }
-        let place = self.emitters().pick(self.scene(), point.position, random);
+        let place = self.emitters().pick(self.scene(), point.place.position, random);
         from_lights + place.map_or(Vec3::ZERO, |place| self.light_from_place(&place, point))
     }
 
@@ -120,9 +120,9 @@ impl Tracer {
 
     fn light_from_place(&self, place: &Place, point: &SurfacePoint) -> Vec3 {
         let Some(evaluated) = point.evaluate(place.towards).filter(|_| place.pdf > 0.0) else { return Vec3::ZERO };
-        let shadowed = match place.point {
+        let shadowed = match &place.point {
             None => self.shadowed(point, place.towards, f32::INFINITY, None),
-            Some((target, triangle)) => self.shadowed(point, target - point.launch(place.towards), 1.0, Some(triangle)),
+            Some((target, end)) => self.shadowed(point, *end - point.launch(place.towards), 1.0, Some(target)),
         };
         if shadowed {
             return Vec3::ZERO;

@@ -7,15 +7,15 @@ use crate::bvh::{Hit, interpolate, plane_normal};
 use crate::ggx::{Glossy, MIN_ROUGHNESS};
 use crate::material::{Material, Scattering};
 use crate::random::Random;
+use crate::rounded::RoundedPoint;
 use crate::scene::{Scene, Vertex};
 
 /// Where a ray met a surface, world space.
 pub(crate) struct SurfacePoint<'a> {
-    /// The point, known to within `error`.
-    pub(crate) position: Vec3,
-    error: Vec3,
-    /// The triangle's number.
-    pub(crate) triangle: usize,
+    /// The point.
+    pub(crate) place: RoundedPoint,
+    /// The material's number.
+    pub(crate) material_number: u32,
     /// The triangle's unit normal, on the viewer's side.
     facing: Vec3,
     /// Whether the viewer is on the side from which the corners run anticlockwise.
@@ -39,17 +39,27 @@ struct Frame {
 impl<'a> SurfacePoint<'a> {
     /// The point of a hit by a ray of a unit direction.
     pub(crate) fn new(scene: &'a Scene, hit: &Hit, direction: Vec3) -> Self {
-        let (corners, _) = &scene.triangles()[hit.triangle];
+        let (corners, material_number) = &scene.triangles()[hit.triangle];
         let positions = corners.map(|v| v.position);
         let normal = plane_normal(positions);
         let front = normal.dot(direction) < 0.0;
         let facing = if front { normal } else { -normal };
-        let (position, error) = point_on(positions, hit.shares);
+        let place = RoundedPoint::new(positions, hit.shares);
         let uv = uv_on(corners, hit.shares);
         let material = scene.material(hit.triangle);
         let shading = Frame::around(shading_normal(corners, hit.shares, facing, -direction));
         let bsdf = material.bsdf(uv, front);
-        Self { position, error, triangle: hit.triangle, facing, front, viewer: -direction, shading, uv, material, bsdf }
+        Self {
+            place,
+            material_number: *material_number,
+            facing,
+            front,
+            viewer: -direction,
+            shading,
+            uv,
+            material,
+            bsdf,
+        }
     }
 
     /// Radiance that the surface sends to the viewer by itself.
@@ -106,29 +116,10 @@ impl<'a> SurfacePoint<'a> {
         by(&self.shading).or_else(|| by(&Frame::around(self.facing)))
     }
 
-    /// Where a ray in a direction may start without meeting this surface again through rounding (Pharr, Jakob & Humphreys:
-    /// Physically Based Rendering, 3rd ed., §3.9.5).
+    /// Where a ray in a direction may start without meeting this surface again through rounding.
     pub(crate) fn launch(&self, direction: Vec3) -> Vec3 {
-        lifted(self.position, self.error, if self.facing.dot(direction) < 0.0 { -self.facing } else { self.facing })
+        self.place.lifted(if self.facing.dot(direction) < 0.0 { -self.facing } else { self.facing })
     }
-}
-
-/// A point of a triangle and how far each coordinate may be off by rounding (ibid., §3.9.4).
-pub(crate) fn point_on(corners: [Vec3; 3], shares: Vec3) -> (Vec3, Vec3) {
-    const UNIT: f32 = 0.5 * f32::EPSILON;
-    const GAMMA_7: f32 = 7.0 * UNIT / (1.0 - 7.0 * UNIT);
-    (interpolate(corners, shares), GAMMA_7 * interpolate(corners.map(Vec3::abs), shares.abs()))
-}
-
-/// A point moved along the unit normal of its plane until it is surely on that side.
-pub(crate) fn lifted(point: Vec3, error: Vec3, normal: Vec3) -> Vec3 {
-    let offset = normal * normal.abs().dot(error);
-    let onwards = |axis: usize| match offset[axis] {
-        step if step > 0.0 => (point[axis] + step).next_up(),
-        step if step < 0.0 => (point[axis] + step).next_down(),
-        _ => point[axis],
-    };
-    Vec3::from_array(std::array::from_fn(onwards))
 }
 
 /// Texture coordinates of a point of a triangle.

@@ -6,6 +6,7 @@ use crate::bvh::{Hit, TriangleBvh};
 use crate::emitters::Emitters;
 use crate::quality::{Estimate, Illumination, Quality};
 use crate::random::Random;
+use crate::rounded::RoundedPoint;
 use crate::scene::Scene;
 use crate::surface_point::{SurfacePoint, uv_on};
 
@@ -103,17 +104,28 @@ impl Tracer {
         Random::of([self.quality.seed, u64::from(sample)].into_iter().chain(words))
     }
 
-    /// The nearest hit of a ray, which may start on the surface of a triangle.
-    pub(crate) fn nearest(&self, origin: Vec3, direction: Vec3, from: Option<usize>) -> Option<Hit> {
-        self.bvh.nearest(origin, direction, |triangle, shares| Some(triangle) != from && self.stops(triangle, shares))
+    /// The nearest hit of a ray, which may start on a surface.
+    pub(crate) fn nearest(&self, origin: Vec3, direction: Vec3, from: Option<&RoundedPoint>) -> Option<Hit> {
+        let stops = |triangle, shares| !self.may_hold(triangle, from) && self.stops(triangle, shares);
+        self.bvh.nearest(origin, direction, stops)
     }
 
-    /// Whether anything but the lit point's triangle and that of the light is between the lit point and the farthest point
-    /// in a direction.
-    pub(crate) fn shadowed(&self, lit: &SurfacePoint, direction: Vec3, farthest: f32, light: Option<usize>) -> bool {
-        let other = |triangle: usize| triangle != lit.triangle && Some(triangle) != light;
-        let stops = |triangle: usize, shares: Vec3| other(triangle) && self.stops(triangle, shares);
+    /// Whether anything is between a lit point and the farthest point in a direction, which may be one of a surface.
+    pub(crate) fn shadowed(
+        &self,
+        lit: &SurfacePoint,
+        direction: Vec3,
+        farthest: f32,
+        end: Option<&RoundedPoint>,
+    ) -> bool {
+        let at_an_end = |triangle| self.may_hold(triangle, Some(&lit.place)) || self.may_hold(triangle, end);
+        let stops = |triangle, shares| !at_an_end(triangle) && self.stops(triangle, shares);
         self.bvh.occluded(lit.launch(direction), direction, farthest, stops)
+    }
+
+    /// Whether a ray's end may lie in a triangle.
+    fn may_hold(&self, triangle: usize, end: Option<&RoundedPoint>) -> bool {
+        end.is_some_and(|end| end.may_lie_in(self.scene.triangles()[triangle].0.map(|v| v.position)))
     }
 
     /// Whether a point of a triangle is none of its material's holes.
