@@ -12,6 +12,7 @@ use lf_compress::tile::RdoOptions;
 use lf_format::{Limits, TexelEncoding};
 use lf_math::PlanePlacement;
 
+use crate::capture_args::{CaptureArgs, CubemapArgs, MergeArgs};
 use crate::exchange_args::{ExportArgs, ImportArgs};
 use crate::scene_args::{SceneArgs, ViewArgs};
 
@@ -31,6 +32,10 @@ pub(crate) enum Command {
     Capture(CaptureArgs),
     /// Show what a scene holds, and a picture of it
     View(ViewArgs),
+    /// Put the shards of a capture together
+    Merge(MergeArgs),
+    /// Trace cube maps of radiance and distance (OpenEXR)
+    Cubemap(CubemapArgs),
     /// Draw a mirror that reflects a .lfslab file
     Render(RenderArgs),
     /// Show what a .lfslab file holds
@@ -61,29 +66,6 @@ pub(crate) struct DemoArgs {
     /// Draw on the CPU even if there is a GPU
     #[arg(long)]
     pub(crate) cpu: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct CaptureArgs {
-    /// The file to write
-    #[arg(long, value_name = "FILE")]
-    pub(crate) out: PathBuf,
-    #[command(flatten)]
-    pub(crate) scene: SceneArgs,
-    /// Cameras per axis, instead of the preset's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
-    pub(crate) cameras: Option<u32>,
-    /// Texels per axis of each camera's image, instead of the preset's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
-    pub(crate) resolution: Option<u32>,
-    /// Where the camera planes stand, instead of the preset's choice
-    #[arg(long, value_enum)]
-    pub(crate) planes: Option<Planes>,
-    #[command(flatten)]
-    pub(crate) encoding: EncodingArgs,
-    /// Keep the texels that no ray through the cell asks for, too
-    #[arg(long)]
-    pub(crate) whole: bool,
 }
 
 /// How texels become bytes.
@@ -185,15 +167,6 @@ pub(crate) enum Preset {
     Paper,
 }
 
-/// Where the camera planes stand.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum Planes {
-    /// On the cell's faces, as in the paper: slabs of three edge lengths
-    Faces,
-    /// Through the cell's centre: slabs of two edge lengths
-    Center,
-}
-
 /// How texels are stored.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum Encoding {
@@ -216,8 +189,9 @@ pub(crate) struct EyeArg(pub(crate) Vec3);
 
 /// What a preset stands for.
 pub(crate) struct Sampling {
-    pub(crate) cameras: u32,
-    pub(crate) resolution: u32,
+    /// Per axis.
+    pub(crate) cameras: [u32; 2],
+    pub(crate) resolution: [u32; 2],
     pub(crate) placement: PlanePlacement,
     /// Rays per texel and axis.
     pub(crate) grid: u32,
@@ -250,8 +224,12 @@ impl FileArgs {
 impl Preset {
     pub(crate) fn sampling(self) -> Sampling {
         match self {
-            Self::Small => Sampling { cameras: 16, resolution: 64, placement: PlanePlacement::CellCenter, grid: 2 },
-            Self::Paper => Sampling { cameras: 32, resolution: 128, placement: PlanePlacement::CellFaces, grid: 1 },
+            Self::Small => {
+                Sampling { cameras: [16; 2], resolution: [64; 2], placement: PlanePlacement::CellCenter, grid: 2 }
+            }
+            Self::Paper => {
+                Sampling { cameras: [32; 2], resolution: [128; 2], placement: PlanePlacement::CellFaces, grid: 1 }
+            }
         }
     }
 

@@ -1,123 +1,253 @@
-//! `lfslab capture`: scene in, file out.
+//! `lfslab capture` and `lfslab merge`: scene in, file out, with a journal between.
 
+use std::ffi::OsString;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use anyhow::{Result, bail};
-use lf_compress::{PackOptions, PackedLightField};
-use lf_format::{Metadata, TexelEncoding};
-use lf_math::{Coverage, Image, LightFieldGeometry, PlanePlacement, SlabTexels};
-use lf_scene::{Capture, capture_slabs};
+use anyhow::{Context, Result, bail};
+use lf_capture::{CaptureError, Journal, Options, Outcome, Plan, Progress, Shard, Totals, capture, write_files};
+use lf_format::Metadata;
+use lf_math::LightFieldGeometry;
 
-use crate::args::{CaptureArgs, Planes, Sampling};
-use crate::output::{check_writable, megabytes, print, progress_bar};
+use crate::args::Sampling;
+use crate::capture_args::{CaptureArgs, MergeArgs};
+use crate::output::{capture_bar, check_writable, megabytes, print};
 use crate::sources::Source;
 
-/// Edge of the blocks that windows are rounded out to, texels.
-const BLOCK: u32 = 4;
+/// A capture was stopped by the user, and can be resumed.
+#[derive(Debug)]
+pub(crate) struct Stopped(String);
+
+impl fmt::Display for Stopped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Stopped {}
+
+/// What a capture made, and what it took.
+pub(crate) struct Captured {
+    pub(crate) file_bytes: u64,
+    /// Rays traced for texels.
+    pub(crate) rays: u64,
+    pub(crate) time: Duration,
+    /// Of the traced texels as they are stored.
+    pub(crate) psnr: f64,
+}
 
 pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
-    check_writable(&args.out)?;
+    for out in [Some(&args.out), args.depth.as_ref()].into_iter().flatten() {
+        check_writable(out)?;
+    }
+    let shard = args.shard.unwrap_or(Shard::WHOLE);
+    let path = journal_path(&args.out, shard);
+    make_room(args, &path)?;
+    if let Some(threads) = args.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().context("--threads")?;
+    }
+    let stop = stop_on_signal()?;
     let source = Source::load(&args.scene)?;
-    let preset = args.scene.preset.sampling();
-    let placement = match args.planes {
-        None => preset.placement,
-        Some(Planes::Faces) => PlanePlacement::CellFaces,
-        Some(Planes::Center) => PlanePlacement::CellCenter,
-    };
-    let cameras = args.cameras.unwrap_or(preset.cameras);
-    let resolution = args.resolution.unwrap_or(preset.resolution);
-    let (mut captured, _) = capture(&source, &Sampling { cameras, resolution, placement, grid: preset.grid })?;
-    if !args.whole {
-        crop(&mut captured)?;
+    let plan = survey(&source, &sampling(args), options(args))?;
+    let mut journal = begin(&path, &plan, shard)?;
+    trace(&source, &mut journal, &stop)?;
+    if shard == Shard::WHOLE {
+        let bytes = finish(journal, &args.out, args.depth.as_deref())?;
+        return print(&format!("{}: {}", args.out.display(), megabytes(bytes)));
     }
-    let (encoding, options) = args.encoding.options();
-    let packed = encode(&captured, encoding, &options)?.0;
-    let bytes = packed.save(&args.out, metadata(&source)?)?;
-    print(&format!("{}: {}", args.out.display(), megabytes(bytes)))
+    let bytes = megabytes(journal.totals().bytes);
+    print(&format!("{}: shard {shard}, {bytes}; put all shards together with lfslab merge", path.display()))
 }
 
-/// Captures the slabs with a progress bar; also how long it took.
-pub(crate) fn capture(source: &Source, sampling: &Sampling) -> Result<(Capture, Duration)> {
-    let &Sampling { cameras, resolution, placement, grid } = sampling;
-    let geometry = LightFieldGeometry::around(source.cell, placement, cameras, resolution)?;
-    let images = u64::from(cameras).pow(2) * geometry.slabs().len() as u64;
-    let bytes = 4 * images * u64::from(resolution).pow(2);
-    if bytes > MAX_DECODED_BYTES {
-        bail!(
-            "{} of texels are more than the {} this program holds in memory",
-            megabytes(bytes),
-            megabytes(MAX_DECODED_BYTES)
-        );
-    }
-    eprintln!(
-        "capture  6 slabs of {cameras}×{cameras} cameras × {resolution}×{resolution} texels, {grid}×{grid} rays each"
-    );
-    let bar = progress_bar(images, "capture", "camera images");
+pub(crate) fn run_merge(args: &MergeArgs) -> Result<()> {
+    check_writable(&args.out)?;
+    let mut journals = args.journals.iter().map(|path| Journal::open(path)).collect::<Result<Vec<_>, _>>()?;
+    let merged = write_files(&mut journals, &args.out, args.depth.as_deref());
+    let totals = merged.map_err(|error| {
+        let advice = match error {
+            CaptureError::Unfinished { .. } => "; run its command again with --resume",
+            CaptureError::DepthFile { captured: true } => "; name it by --depth FILE",
+            _ => "",
+        };
+        anyhow::Error::new(error).context(format!("cannot make {}{advice}", args.out.display()))
+    })?;
+    eprintln!("merge    {} tiles of {} journals, {}", totals.tiles, journals.len(), quality(&totals));
+    print(&format!("{}: {}", args.out.display(), megabytes(std::fs::metadata(&args.out)?.len())))
+}
+
+/// Captures into a file in one go, whatever an earlier run left.
+pub(crate) fn capture_to(source: &Source, sampling: &Sampling, options: Options, out: &Path) -> Result<Captured> {
     let start = Instant::now();
-    let captured = capture_slabs(&source.tracer, &geometry, grid, &|done| bar.set_position(done))?;
-    bar.finish_and_clear();
-    let elapsed = start.elapsed();
-    let rate = captured.rays as f64 / elapsed.as_secs_f64() / 1e6;
-    eprintln!(
-        "         {:.1} s, {:.1} million rays, {rate:.2} million a second",
-        elapsed.as_secs_f64(),
-        captured.rays as f64 / 1e6
-    );
-    Ok((captured, elapsed))
+    let plan = survey(source, sampling, options)?;
+    let path = journal_path(out, Shard::WHOLE);
+    remove(&path)?;
+    let mut journal = begin(&path, &plan, Shard::WHOLE)?;
+    trace(source, &mut journal, &AtomicBool::new(false))?;
+    let totals = journal.totals();
+    let file_bytes = finish(journal, out, None)?;
+    let rays = totals.traced * plan.rays_per_texel();
+    Ok(Captured { file_bytes, rays, time: start.elapsed(), psnr: totals.psnr() })
 }
 
-/// Leaves out the texels that no ray through the cell asks for.
-pub(crate) fn crop(capture: &mut Capture) -> Result<()> {
-    let count = |capture: &Capture| capture.texels.iter().map(|slab| slab.texels().len() as f64).sum::<f64>();
-    let all = count(capture);
-    for (slab, texels) in capture.geometry.slabs().iter().zip(&mut capture.texels) {
-        let needed = Coverage::of_cell(slab, capture.geometry.cell()).aligned(BLOCK);
-        if !needed.is_whole() {
-            *texels = texels.crop(needed)?;
-        }
+fn sampling(args: &CaptureArgs) -> Sampling {
+    let preset = args.scene.preset.sampling();
+    Sampling {
+        cameras: args.cameras.unwrap_or(preset.cameras),
+        resolution: args.resolution.unwrap_or(preset.resolution),
+        placement: args.planes.map_or(preset.placement, |planes| planes.0),
+        grid: args.supersample.unwrap_or(preset.grid),
     }
-    eprintln!("crop     {:.1} % of the texels are needed", 100.0 * count(capture) / all);
+}
+
+fn options(args: &CaptureArgs) -> Options {
+    let (encoding, pack) = args.encoding.options();
+    Options { grid: sampling(args).grid, encoding, pack, whole: args.whole, depth: args.depth.is_some() }
+}
+
+/// The journal of a file: beside it.
+fn journal_path(out: &Path, shard: Shard) -> PathBuf {
+    let mut name = OsString::from(out);
+    name.push(if shard == Shard::WHOLE {
+        ".part".to_owned()
+    } else {
+        format!(".{}-of-{}.part", shard.number(), shard.count())
+    });
+    name.into()
+}
+
+/// Sees to it that no journal is in the way, unless it is to be resumed.
+fn make_room(args: &CaptureArgs, path: &Path) -> Result<()> {
+    if args.restart {
+        return remove(path);
+    }
+    if !args.resume && path.exists() {
+        bail!("{} holds an unfinished capture: --resume goes on with it, --restart begins anew", path.display());
+    }
     Ok(())
 }
 
-/// Encodes a capture and says what it cost; also the encoding time and the PSNR of the stored texels.
-pub(crate) fn encode(
-    capture: &Capture,
-    encoding: TexelEncoding,
-    options: &PackOptions,
-) -> Result<(PackedLightField, Duration, f64)> {
-    let start = Instant::now();
-    let packed = PackedLightField::encode_with(capture.geometry.clone(), &capture.texels, encoding, options)?;
-    let elapsed = start.elapsed();
-    let psnr = stored_psnr(capture, &packed)?;
-    let quality = if psnr.is_finite() { format!("{psnr:.2} dB") } else { "lossless".to_owned() };
-    eprintln!("encode   {:.1} s, {quality}", elapsed.as_secs_f64());
-    Ok((packed, elapsed, psnr))
-}
-
-/// Decoded texels may take this much memory.
-pub(crate) const MAX_DECODED_BYTES: u64 = 8 << 30;
-
-/// PSNR of all decoded texels against the captured ones.
-fn stored_psnr(capture: &Capture, packed: &PackedLightField) -> Result<f64> {
-    let (mut squares, mut values) = (0.0, 0.0);
-    for (before, after) in capture.texels.iter().zip(packed.decode(MAX_DECODED_BYTES)?) {
-        let (before, after) = (row(before)?, row(&after)?);
-        let all = Image::filled(before.width(), 1, true);
-        let error = lf_math::image_error(&before, &after, &all)?;
-        squares += error.mse * error.pixels as f64;
-        values += error.pixels as f64;
+fn remove(journal: &Path) -> Result<()> {
+    match std::fs::remove_file(journal) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(error).with_context(|| format!("cannot remove {}", journal.display()))
+        }
+        _ => Ok(()),
     }
-    Ok(10.0 * (255.0 * 255.0 * values / squares).log10())
 }
 
-/// All texels of a slab as a picture of one row.
-fn row(texels: &SlabTexels) -> Result<Image<[u8; 4]>> {
-    Ok(Image::new(u32::try_from(texels.texels().len())?, 1, texels.texels().to_vec())?)
+/// A flag that is set by Ctrl-C or a polite kill; the second one ends the program at once.
+fn stop_on_signal() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let handler = move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            process::exit(130);
+        }
+        eprintln!("\nstopping: finished tiles are kept; once more to quit at once");
+    };
+    ctrlc::set_handler(handler).context("cannot watch for Ctrl-C")?;
+    Ok(stop)
+}
+
+/// Finds the focal planes and what is needed, and says what will be done.
+fn survey(source: &Source, sampling: &Sampling, options: Options) -> Result<Plan> {
+    let &Sampling { cameras: [s, t], resolution: [u, v], placement, grid } = sampling;
+    let geometry = LightFieldGeometry::around_with(source.cell, placement, sampling.cameras, sampling.resolution)?;
+    let start = Instant::now();
+    let plan = Plan::survey(&source.tracer, &geometry, options, metadata(source)?)?;
+    let stored: u64 = plan.tilings().iter().map(|tiling| tiling.coverage().texels()).sum();
+    eprintln!(
+        "capture  6 slabs of {s}×{t} cameras × {u}×{v} texels, {grid}×{grid} rays each; surveyed in {:.1} s, {:.1} % of \
+         the texels to be stored in {} tiles",
+        start.elapsed().as_secs_f64(),
+        100.0 * stored as f64 / plan.all_texels() as f64,
+        plan.tiles().len()
+    );
+    Ok(plan)
+}
+
+/// Begins a journal, or goes on with the one that is there.
+fn begin(path: &Path, plan: &Plan, shard: Shard) -> Result<Journal> {
+    if !path.exists() {
+        return Ok(Journal::create(path, plan, shard)?);
+    }
+    let journal = Journal::resume(path, plan, shard).map_err(|error| {
+        let advice = match error {
+            CaptureError::InUse { .. } => "wait for it",
+            _ => "give the options that it was begun with, or --restart",
+        };
+        anyhow::Error::new(error).context(format!("cannot resume ({advice})"))
+    })?;
+    eprintln!("resume   {} tiles are in {}", journal.totals().tiles, path.display());
+    Ok(journal)
+}
+
+/// Captures what a journal lacks, with a progress bar.
+fn trace(source: &Source, journal: &mut Journal, stop: &AtomicBool) -> Result<()> {
+    let bar = capture_bar();
+    let (start, rays) = (Instant::now(), AtomicU64::new(0));
+    let progress = |progress: Progress| {
+        let all = rays.fetch_max(progress.rays, Ordering::Relaxed).max(progress.rays);
+        bar.set_length(progress.all_texels);
+        bar.set_position(progress.texels);
+        bar.set_prefix(format!("{:.2}", rate(all, start.elapsed())));
+    };
+    let outcome = capture(&source.tracer, journal, &progress, stop);
+    bar.finish_and_clear();
+    if outcome? == Outcome::Stopped {
+        let (path, tiles) = (journal.path().display(), journal.totals().tiles);
+        let all = tiles + journal.missing().len();
+        let message = format!("stopped: {tiles} of {all} tiles are in {path}; the same command with --resume goes on");
+        return Err(Stopped(message).into());
+    }
+    tell(journal, rays.into_inner(), start.elapsed());
+    Ok(())
+}
+
+/// The last line of a capture: this run's rays, and what is in the journal.
+fn tell(journal: &Journal, rays: u64, elapsed: Duration) {
+    let totals = journal.totals();
+    let share = match journal.shard() {
+        Shard::WHOLE => {
+            let share = 100.0 * totals.traced as f64 / journal.plan().all_texels() as f64;
+            format!("; {share:.1} % of the texels were traced")
+        }
+        _ => String::new(),
+    };
+    eprintln!(
+        "         {:.1} s, {:.1} million rays, {:.2} million a second{share}; {}",
+        elapsed.as_secs_f64(),
+        rays as f64 / 1e6,
+        rate(rays, elapsed),
+        quality(&totals)
+    );
+}
+
+fn quality(totals: &Totals) -> String {
+    let psnr = totals.psnr();
+    if psnr.is_finite() { format!("stored at {psnr:.2} dB") } else { "lossless".to_owned() }
+}
+
+/// Million rays a second.
+fn rate(rays: u64, elapsed: Duration) -> f64 {
+    rays as f64 / 1e6 / elapsed.as_secs_f64().max(1e-9)
+}
+
+/// Makes the files of a finished journal, which is removed; the length of the first.
+fn finish(journal: Journal, out: &Path, depth: Option<&Path>) -> Result<u64> {
+    let mut journals = [journal];
+    write_files(&mut journals, out, depth)?;
+    let [journal] = journals;
+    journal.remove()?;
+    Ok(std::fs::metadata(out).with_context(|| out.display().to_string())?.len())
 }
 
 /// Who made the file from what.
-pub(crate) fn metadata(source: &Source) -> Result<Metadata> {
+fn metadata(source: &Source) -> Result<Metadata> {
     let mut metadata = Metadata::new();
     metadata.insert("generator", concat!("lfslab ", env!("CARGO_PKG_VERSION")))?;
     metadata.insert("scene", source.name())?;

@@ -4,13 +4,14 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use lf_compress::PackOptions;
+use lf_capture::Options;
+use lf_compress::{PackOptions, PackedLightField};
 use lf_math::{CubeMap, Image, Pinhole, PlanePlacement, TriangleMesh};
 use lf_report::{Figure, Machine, MethodResult, Report};
-use lf_scene::{Capture, capture_cube};
+use lf_scene::capture_cube;
 
 use crate::args::{DemoArgs, FileArgs, Sampling};
-use crate::capture::{capture, crop, encode, metadata};
+use crate::capture::{Captured, capture_to};
 use crate::device::{CpuSide, GpuSide, open_gpu, or_cpu};
 use crate::frames::{Asked, MethodFrames, ReflectorFrames, Stage, agreement, full_orbit, orbit};
 use crate::input::load;
@@ -28,13 +29,12 @@ const ARC_STEP: f32 = 0.122_173_05;
 /// What was made before the frames, with what it cost.
 struct Prepared {
     source: Source,
-    capture: Capture,
+    captured: Captured,
+    /// Of what is read from the file.
+    texels: u64,
+    focal_depths: Vec<Option<f32>>,
     cube: CubeMap,
-    file_bytes: u64,
-    capture_time: Duration,
-    encode_time: Duration,
     cube_time: Duration,
-    stored_psnr: f64,
 }
 
 pub(crate) fn run(args: &DemoArgs) -> Result<()> {
@@ -49,9 +49,10 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
     std::fs::create_dir_all(&args.out).with_context(|| format!("cannot make the folder {}", args.out.display()))?;
 
     let file = args.out.join(format!("{}.lfslab", source.name()));
-    let prepared = prepare(args, source, &file)?;
+    let captured = capture(args, &source, &file)?;
     // From here on everything comes from the file.
     let field = load(&FileArgs::new(&file))?;
+    let prepared = prepare(source, captured, &field)?;
     let cpu = CpuSide::new(&field, &prepared.cube)?;
     let gpu = or_cpu(open_gpu(args.cpu).map(|gpu| GpuSide::new(gpu, &field, &prepared.cube, args.size)));
     let stage = Stage { source: &prepared.source, cpu: &cpu, gpu: gpu.as_ref() };
@@ -74,18 +75,23 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
 const PARALLAX_CAPTION: &str = "The middle of the sphere from six eyes 7° apart. In the traced and in the slab pictures \
     near things move against what is behind them; in the environment map they stay glued to it.";
 
-/// Captures, encodes, writes the file and takes the environment map.
-fn prepare(args: &DemoArgs, source: Source, file: &Path) -> Result<Prepared> {
-    let (mut capture, capture_time) = capture(&source, &args.scene.preset.sampling())?;
-    crop(&mut capture)?;
-    let (packed, encode_time, stored_psnr) = encode(&capture, lf_format::TexelEncoding::Bc1, &PackOptions::default())?;
-    let file_bytes = packed.save(file, metadata(&source)?)?;
-    eprintln!("file     {}: {}", file.display(), megabytes(file_bytes));
+/// Captures the slabs into the file.
+fn capture(args: &DemoArgs, source: &Source, file: &Path) -> Result<Captured> {
+    let sampling = args.scene.preset.sampling();
+    let (encoding, pack) = (lf_format::TexelEncoding::Bc1, PackOptions::default());
+    let options = Options { grid: sampling.grid, encoding, pack, whole: false, depth: false };
+    capture_to(source, &sampling, options, file)
+}
+
+/// Takes the environment map, and notes what the report tells of the slabs.
+fn prepare(source: Source, captured: Captured, field: &PackedLightField) -> Result<Prepared> {
     let start = Instant::now();
     let cube = capture_cube(&source.tracer, &source.cell, CUBE_SIZE, CUBE_GRID)?;
     let cube_time = start.elapsed();
     eprintln!("cube map {:.1} s, 6 faces of {CUBE_SIZE}×{CUBE_SIZE} texels", cube_time.as_secs_f64());
-    Ok(Prepared { source, capture, cube, file_bytes, capture_time, encode_time, cube_time, stored_psnr })
+    let texels = field.tilings().iter().map(|tiling| tiling.coverage().texels()).sum();
+    let focal_depths = field.geometry().slabs().iter().map(lf_math::Slab::focal_depth).collect();
+    Ok(Prepared { source, captured, texels, focal_depths, cube, cube_time })
 }
 
 /// All methods on all reflectors, seen from the orbit.
@@ -214,21 +220,20 @@ fn method_result(
     let side = gpu.filter(|_| frames.on_gpu);
     let sampling = args.scene.preset.sampling();
     let cube_bytes = 4 * 6 * u64::from(CUBE_SIZE).pow(2);
-    let texel_bytes: usize = prepared.capture.texels.iter().map(|texels| size_of_val(texels.texels())).sum();
     let seconds = |time: Duration| time.as_secs_f64();
     let (method, parameters, bytes_on_device, bytes_on_disk, preparation_s) = match frames.asked {
         Asked::Slabs => (
             "slabs",
             format!(
                 "6 × {0}×{0} cameras × {1}×{1} texels, planes {2}, {3}",
-                sampling.cameras,
-                sampling.resolution,
+                sampling.cameras[0],
+                sampling.resolution[0],
                 placement(&sampling),
                 side.map_or("decoded RGBA8", |side| side.storage.as_str())
             ),
-            side.map_or(texel_bytes as u64, |side| side.slab_bytes),
-            Some(prepared.file_bytes),
-            seconds(prepared.capture_time + prepared.encode_time),
+            side.map_or(4 * prepared.texels, |side| side.slab_bytes),
+            Some(prepared.captured.file_bytes),
+            seconds(prepared.captured.time),
         ),
         Asked::Cube => (
             lf_report::BASELINE_METHOD,
@@ -252,10 +257,11 @@ fn method_result(
 }
 
 /// Where the camera planes stand, for people.
-fn placement(sampling: &Sampling) -> &'static str {
+fn placement(sampling: &Sampling) -> String {
     match sampling.placement {
-        PlanePlacement::CellFaces => "on the cell's faces",
-        PlanePlacement::CellCenter => "through the cell's centre",
+        PlanePlacement::CellFaces => "on the cell's faces".to_owned(),
+        PlanePlacement::CellCenter => "through the cell's centre".to_owned(),
+        PlanePlacement::Offset(offset) => format!("{offset} m from the cell's centre"),
     }
 }
 
@@ -270,12 +276,11 @@ fn parity_note(name: &str, frames: &ReflectorFrames) -> Option<String> {
 }
 
 fn facts(args: &DemoArgs, prepared: &Prepared) -> Vec<(String, String)> {
-    let capture = &prepared.capture;
+    let captured = &prepared.captured;
     let (center, edges) = (prepared.source.cell.center(), 2.0 * prepared.source.cell.half_extent());
-    let depth = |slab: &lf_math::Slab| slab.focal_depth().map_or("∞".to_owned(), |d| format!("{d:.2}"));
-    let depths: Vec<_> = capture.geometry.slabs().iter().map(depth).collect();
-    let texels: usize = capture.texels.iter().map(|slab| slab.texels().len()).sum();
-    let bits = 8.0 * prepared.file_bytes as f64 / texels as f64;
+    let depth = |depth: &Option<f32>| depth.map_or("∞".to_owned(), |d| format!("{d:.2}"));
+    let depths: Vec<_> = prepared.focal_depths.iter().map(depth).collect();
+    let bits = 8.0 * captured.file_bytes as f64 / prepared.texels as f64;
     [
         ("Triangles", prepared.source.tracer.scene().triangles().len().to_string()),
         ("Cell", format!("{:.3} m around ({:.3}, {:.3}, {:.3})", edges.x, center.x, center.y, center.z)),
@@ -284,17 +289,14 @@ fn facts(args: &DemoArgs, prepared: &Prepared) -> Vec<(String, String)> {
         (
             "Capture",
             format!(
-                "{:.1} million rays in {:.1} s, {2}×{2} a texel",
-                capture.rays as f64 / 1e6,
-                prepared.capture_time.as_secs_f64(),
+                "{:.1} million rays, traced and encoded in {:.1} s, {2}×{2} a texel",
+                captured.rays as f64 / 1e6,
+                captured.time.as_secs_f64(),
                 args.scene.preset.sampling().grid
             ),
         ),
-        (
-            "Encoding",
-            format!("{:.1} s, texels stored at {:.2} dB", prepared.encode_time.as_secs_f64(), prepared.stored_psnr),
-        ),
-        ("File", format!("{}, {bits:.2} bits a texel", megabytes(prepared.file_bytes))),
+        ("Stored texels", format!("{:.2} dB", captured.psnr)),
+        ("File", format!("{}, {bits:.2} bits a texel", megabytes(captured.file_bytes))),
         ("Pictures", format!("{0}×{0} pixels", args.size)),
     ]
     .map(|(name, value)| (name.to_owned(), value))

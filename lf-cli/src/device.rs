@@ -6,7 +6,7 @@ use lf_gpu::{Gpu, MirrorMesh, ReflectionPass, SlabTexture, Target};
 use lf_ibr::{CubeField, Environment, GBuffer, SlabField, reflect_frame};
 use lf_math::{CubeMap, Image, Pinhole, TriangleMesh};
 
-use crate::capture::MAX_DECODED_BYTES;
+use crate::input::MAX_DECODED_BYTES;
 
 /// Opens a GPU, or says why the CPU draws.
 pub(crate) fn open_gpu(cpu_only: bool) -> Option<Gpu> {

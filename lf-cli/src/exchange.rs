@@ -14,9 +14,8 @@ use lf_exchange::{
 use lf_format::{Metadata, TexelEncoding};
 use lf_math::{Cell, Coverage, SlabTexels};
 
-use crate::capture::MAX_DECODED_BYTES;
 use crate::exchange_args::{ExportArgs, ExportFormat, ImportArgs};
-use crate::input::{load, open};
+use crate::input::{MAX_DECODED_BYTES, load, open};
 use crate::output::{check_writable, megabytes, print, write};
 
 /// zstd's level in KTX2 files.

@@ -11,6 +11,9 @@ use crate::args::FileArgs;
 /// An open file whose structure is sound.
 pub(crate) type Input = FileReader<File>;
 
+/// Decoded texels may take this much memory.
+pub(crate) const MAX_DECODED_BYTES: u64 = 8 << 30;
+
 /// Opens a file and validates its structure.
 pub(crate) fn open(args: &FileArgs) -> Result<Input> {
     let file = File::open(&args.file).with_context(|| format!("cannot read {}", args.file.display()))?;

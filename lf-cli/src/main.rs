@@ -6,7 +6,9 @@
 
 mod args;
 mod capture;
+mod capture_args;
 mod crop;
+mod cubemap;
 mod demo;
 mod device;
 mod exchange;
@@ -34,7 +36,8 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error:#}");
-            ExitCode::FAILURE
+            // What shells give for Ctrl-C.
+            if error.is::<capture::Stopped>() { ExitCode::from(130) } else { ExitCode::FAILURE }
         }
     }
 }
@@ -44,6 +47,8 @@ fn run(command: &Command) -> Result<()> {
         Command::Demo(args) => demo::run(args),
         Command::Capture(args) => capture::run(args),
         Command::View(args) => view::run(args),
+        Command::Merge(args) => capture::run_merge(args),
+        Command::Cubemap(args) => cubemap::run(args),
         Command::Render(args) => render::run(args),
         Command::Info(args) => info::run(args),
         Command::Validate(args) => validate::run(args),

@@ -68,6 +68,13 @@ pub(crate) fn progress_bar(length: u64, what: &str, unit: &str) -> ProgressBar {
     ProgressBar::new(length).with_style(style).with_message(what.to_owned())
 }
 
+/// A bar for a capture: its prefix is the rate in million rays a second.
+pub(crate) fn capture_bar() -> ProgressBar {
+    let template = "capture  {wide_bar} {percent:>3} %, {prefix} million rays/s, {eta} left";
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(0).with_style(style)
+}
+
 /// A size in MiB for people.
 pub(crate) fn megabytes(bytes: u64) -> String {
     format!("{:.2} MiB ({bytes} bytes)", bytes as f64 / f64::from(1 << 20))

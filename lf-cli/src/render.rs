@@ -11,10 +11,9 @@ use lf_ibr::SlabField;
 use lf_math::{Image, Pinhole, TriangleMesh};
 
 use crate::args::RenderArgs;
-use crate::capture::MAX_DECODED_BYTES;
 use crate::device::{CpuMethod, GpuMethod, Method, open_gpu, or_cpu};
 use crate::frames::FOV_Y;
-use crate::input::load;
+use crate::input::{MAX_DECODED_BYTES, load};
 use crate::output::{check_writable, megabytes, png, print, write};
 use crate::pictures::over;
 use crate::sources::{builtin, from_file};
