@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+use lf_scene::{Illumination, Quality};
 
 use crate::args::{CellArg, EyeArg, Preset};
 
@@ -27,9 +28,21 @@ pub(crate) struct SceneArgs {
     pub(crate) preset: Preset,
 }
 
-/// Light from outside the scene.
+/// Which light is traced, and light from outside the scene.
 #[derive(Debug, Args)]
 pub(crate) struct LightArgs {
+    /// Which light is traced
+    #[arg(long, value_enum, default_value_t = LightKind::Direct)]
+    pub(crate) light: LightKind,
+    /// Samples of each ray; the noise falls with their root [default: 1, with global light 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pub(crate) samples: Option<u32>,
+    /// How often light may be scattered on its way; global light only
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) bounces: u32,
+    /// Another number gives another noise
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
     /// A panorama around the scene (.hdr, .exr), equirectangular
     #[arg(long, value_name = "FILE")]
     pub(crate) environment: Option<PathBuf>,
@@ -39,6 +52,26 @@ pub(crate) struct LightArgs {
     /// Turns the panorama about the vertical: its middle moves from -Z towards +X
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "environment", allow_hyphen_values = true)]
     pub(crate) environment_turn: f32,
+}
+
+/// Which light is traced.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum LightKind {
+    /// Straight from its source, and an ambient term for the rest
+    Direct,
+    /// All of it, by path tracing
+    Global,
+}
+
+impl LightArgs {
+    /// What the tracer is asked for.
+    pub(crate) fn quality(&self) -> Quality {
+        let (illumination, samples) = match self.light {
+            LightKind::Direct => (Illumination::Direct, 1),
+            LightKind::Global => (Illumination::Global { max_bounces: self.bounces }, 64),
+        };
+        Quality { illumination, samples: self.samples.unwrap_or(samples), seed: self.seed }
+    }
 }
 
 #[derive(Debug, Args)]

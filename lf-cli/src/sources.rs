@@ -33,7 +33,7 @@ impl Source {
         let Loaded { scene, cameras, license, cell: embedded } = Loaded::open(&args.scene, &args.light)?;
         let camera = find_camera(&cameras, args.camera.as_deref())?;
         let start = Instant::now();
-        let tracer = Tracer::new(scene);
+        let tracer = Tracer::new(scene).with_quality(args.light.quality());
         let build_time = start.elapsed();
         let cell = match (args.cell, embedded) {
             (Some(arg), _) => Cell::cube(arg.center, arg.size).context("--cell")?,
@@ -100,10 +100,10 @@ fn warn(path: &Path, warnings: &[String]) {
     }
 }
 
-/// An embedded scene in a panorama.
+/// An embedded scene in a panorama, whose light takes the place of the ambient term.
 fn under(scene: Scene, environment: Option<EnvironmentMap>) -> Scene {
     let Some(map) = environment else { return scene };
-    let lighting = Lighting { environment: Environment::Map(map.into()), ..scene.lighting().clone() };
+    let lighting = Lighting { ambient: Vec3::ZERO, environment: Environment::Map(map.into()), ..scene.lighting().clone() };
     scene.with_lighting(lighting)
 }
 

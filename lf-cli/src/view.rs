@@ -23,7 +23,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<()> {
     if !is_exr && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
         bail!("cannot write {}: the picture's name must end in .png or .exr", out.display());
     }
-    let tracer = Tracer::new(loaded.scene);
+    let tracer = Tracer::new(loaded.scene).with_quality(args.light.quality());
     let bar = progress_bar(args.size.height.into(), "view", "rows");
     let picture = view(&tracer, &camera, &|done| bar.set_position(done));
     bar.finish_and_clear();

@@ -75,8 +75,8 @@ pub(super) fn convert_camera(
     Ok(Some(SceneCamera { name, position, forward, up, fov_y }))
 }
 
-/// The file's lights, and a sun if it names one. A file with nothing that shines gets a lamp at its camera. Ambient light
-/// fills in for indirect light.
+/// The file's lights, and a sun if it names one. A file with nothing that shines gets a lamp at its camera. Where no
+/// environment is given, ambient light fills in for it and for indirect light.
 pub(super) fn lighting(
     mut lights: Vec<Light>,
     document: &Document,
@@ -95,9 +95,12 @@ pub(super) fn lighting(
         let reach = 0.25 * (max - min).length();
         lights.push(Light::Point { position, intensity: Vec3::splat(PI * reach * reach) });
     }
-    let sky = || Environment::Sky(Vec3::new(0.75, 0.85, 1.0));
-    let environment = options.environment.clone().map_or_else(sky, |map| Environment::Map(map.into()));
-    Lighting { lights, ambient: Vec3::splat(0.45), environment }
+    match options.environment.clone() {
+        Some(map) => Lighting { lights, ambient: Vec3::ZERO, environment: Environment::Map(map.into()) },
+        None => {
+            Lighting { lights, ambient: Vec3::splat(0.45), environment: Environment::Sky(Vec3::new(0.75, 0.85, 1.0)) }
+        }
+    }
 }
 
 /// Whether a triangle emits light.
