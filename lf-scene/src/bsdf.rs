@@ -144,3 +144,95 @@ pub(crate) fn cosine_hemisphere(uniform: Vec2) -> Vec3 {
     let radius = uniform.x.sqrt();
     Vec3::new(radius * cos, radius * sin, (1.0 - uniform.x).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chi_square::assert_picks;
+
+    /// To the frame of the test, whose bins are narrow along +Y.
+    fn upright(v: Vec3) -> Vec3 {
+        Vec3::new(v.x, v.z, v.y)
+    }
+
+    fn models() -> Vec<Bsdf> {
+        let base = Vec3::new(0.9, 0.5, 0.1);
+        let glossy = [(1.0, 1.0), (1.0, 0.6), (1.0, 0.4), (0.0, 0.5), (0.5, 0.7), (0.0, 1.0)];
+        let glossy = glossy.map(|(metallic, roughness)| Bsdf::Glossy(Glossy::new(base, metallic, roughness)));
+        [vec![Bsdf::Lambert(base)], glossy.to_vec()].concat()
+    }
+
+    fn viewers() -> [Vec3; 3] {
+        [Vec3::Z, Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.5, 0.8, 0.2).normalize()]
+    }
+
+    #[test]
+    fn directions_are_picked_as_densely_as_told() {
+        for (bsdf, viewer) in models().iter().flat_map(|bsdf| viewers().map(|viewer| (bsdf, viewer))) {
+            let mut random = Random::of([11]);
+            let sample = || bsdf.sample(viewer, &mut random).map(|scattered| upright(scattered.towards));
+            let pdf = |l: Vec3| bsdf.evaluate(viewer, upright(l)).map_or(0.0, |evaluated| evaluated.pdf);
+            let total = assert_picks(&format!("{bsdf:?} from {viewer}"), sample, pdf);
+            // Facets may reflect into the surface.
+            let least = if matches!(bsdf, Bsdf::Lambert(_)) { 0.999 } else { 0.45 };
+            assert!((least..1.001).contains(&total), "{bsdf:?} from {viewer}: {total}");
+        }
+    }
+
+    #[test]
+    fn scattering_is_reciprocal() {
+        let mut random = Random::of([3]);
+        let mut direction = || cosine_hemisphere(Vec2::new(random.uniform(), random.uniform()));
+        for bsdf in models() {
+            for _ in 0..1000 {
+                let (a, b) = (direction(), direction());
+                let forth = bsdf.evaluate(a, b).unwrap().value / b.z;
+                let back = bsdf.evaluate(b, a).unwrap().value / a.z;
+                assert!((forth - back).length() <= 1e-3 * forth.length(), "{bsdf:?}, {a}, {b}: {forth} {back}");
+            }
+        }
+    }
+
+    /// No metal returns more light than it gets, however narrow its peak; a dielectric at most its reflection more, which is how
+    /// glTF's model adds the two.
+    #[test]
+    fn no_light_is_made() {
+        for roughness in [0.0, 0.03, 0.05, 0.1, 0.3, 1.0] {
+            for metallic in [0.0, 0.5, 1.0] {
+                let bsdf = Bsdf::Glossy(Glossy::new(Vec3::ONE, metallic, roughness));
+                for viewer in viewers() {
+                    let mut random = Random::of([5]);
+                    let sum: Vec3 = (0..20_000)
+                        .filter_map(|_| bsdf.sample(viewer, &mut random))
+                        .map(|scattered| scattered.weight)
+                        .sum();
+                    let albedo = sum / 20_000.0;
+                    let most = 1.01 + (1.0 - metallic) * schlick(Vec3::splat(0.04), viewer.z).x;
+                    assert!(
+                        albedo.max_element() < most,
+                        "metallic {metallic}, roughness {roughness}, {viewer}: {albedo}"
+                    );
+                    assert!(
+                        albedo.min_element() > 0.25,
+                        "metallic {metallic}, roughness {roughness}, {viewer}: {albedo}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// Known values: normal incidence, Brewster's angle, the critical angle.
+    #[test]
+    fn fresnel_at_special_angles() {
+        assert!((fresnel(1.0, 1.5).0 - 0.04).abs() < 1e-6);
+        let brewster = (1.0f32 / (1.0 + 1.5 * 1.5)).sqrt();
+        let (share, inside) = fresnel(brewster, 1.5);
+        // Only light polarised across the plane is reflected, ((n² − 1)/(n² + 1))² of it.
+        assert!((share - 0.5 * (1.25f32 / 3.25).powi(2)).abs() < 1e-6);
+        // Reflected and refracted light are at right angles.
+        assert!((inside - (1.0 - brewster * brewster).sqrt()).abs() < 1e-6);
+        assert_eq!(fresnel(0.74, 1.0 / 1.5), (1.0, 0.0));
+        assert!(fresnel(0.75, 1.0 / 1.5).0 < 1.0);
+        assert_eq!(fresnel(0.0, 1.5).0, 1.0);
+    }
+}

@@ -168,3 +168,66 @@ impl EnvironmentMap {
         (f64::from(self.cell_luminance(column, row)) / total) as f32
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chi_square::assert_picks;
+
+    /// A dim panorama with a few bright texels, among them some at the poles and at the seam. Its cells lie as the bins of the test do.
+    fn panorama() -> Environment {
+        let (width, height) = (40, 20);
+        let texel = |i: u32| match i {
+            0 | 39 | 100 | 289 | 780 => Vec3::new(20.0, 10.0, 5.0),
+            i if i % 40 < 12 => Vec3::ZERO,
+            i => Vec3::new(0.1, 0.2, 0.3) * (i % 7) as f32,
+        };
+        let image = Image::new(width, height, (0..width * height).map(texel).collect()).unwrap();
+        Environment::Map(Arc::new(EnvironmentMap::new(image, 4.5 / 40.0 * TAU).unwrap()))
+    }
+
+    #[test]
+    fn directions_are_picked_as_densely_as_told() {
+        for (what, environment) in [("sky", Environment::Sky(Vec3::ONE)), ("panorama", panorama())] {
+            let mut random = Random::of([1]);
+            let sample = || environment.sample(&mut random).map(|(direction, _)| direction);
+            let total = assert_picks(what, sample, |direction| environment.pdf(direction));
+            assert!((total - 1.0).abs() < 2e-3, "{what}: {total}");
+        }
+    }
+
+    /// The density that comes with a direction is that of the direction, but for those on the edge of a cell; and it is positive where there is
+    /// light.
+    #[test]
+    fn densities_agree_and_cover_all_light() {
+        let environment = panorama();
+        let mut random = Random::of([2]);
+        let mut same = 0;
+        for _ in 0..10_000 {
+            let (direction, pdf) = environment.sample(&mut random).unwrap();
+            assert!((direction.length() - 1.0).abs() < 1e-5 && pdf > 0.0);
+            same += u32::from(environment.pdf(direction) == pdf);
+        }
+        assert!(same > 9_990, "{same}");
+        let sky = Environment::Sky(Vec3::ONE);
+        for _ in 0..10_000 {
+            let (direction, _) = sky.sample(&mut random).unwrap();
+            assert!(environment.towards(direction) == Vec3::ZERO || environment.pdf(direction) > 0.0);
+        }
+    }
+
+    #[test]
+    fn the_middle_looks_ahead_and_turns_towards_the_right() {
+        let texel = |i: u32| Vec3::new((i % 4) as f32, (i / 4) as f32, 0.0);
+        let image = Image::new(4, 2, (0..8).map(texel).collect()).unwrap();
+        let map = |turn: f32| Environment::Map(Arc::new(EnvironmentMap::new(image.clone(), turn).unwrap()));
+        let ahead = Vec3::new(0.0, 0.5, -1.0).normalize();
+        // Between columns 1 and 2; a quarter turn puts that towards +X.
+        let middle = map(0.0).towards(ahead);
+        assert!((middle.x - 1.5).abs() < 1e-5, "{middle}");
+        assert!((map(0.5 * PI).towards(Vec3::new(1.0, 0.5, 0.0).normalize()) - middle).length() < 1e-4);
+        assert_eq!((map(0.0).towards(Vec3::Y).y, map(0.0).towards(Vec3::NEG_Y).y), (0.0, 1.0));
+        let black = Environment::Map(Arc::new(EnvironmentMap::new(Image::filled(4, 2, Vec3::ZERO), 0.0).unwrap()));
+        assert!(!black.shines() && black.sample(&mut Random::of([0])).is_none() && map(0.0).shines());
+    }
+}

@@ -2,7 +2,8 @@
 //!
 //! A dielectric mixes Lambert and GGX by Schlick's reflectance of 0.04, a metal is GGX with Schlick's reflectance of the base
 //! colour; `metallic` mixes the two. Masking and shadowing are Smith's, separable. Light that is reflected between
-//! facets is lost, as in the specification: a rough white metal is darker than its surroundings.
+//! facets is lost, as in the specification: a rough white metal is darker than its surroundings. And as there, a white dielectric
+//! seen at a grazing angle returns more than it gets: Lambert's part is reduced by the half vector, not by the viewer.
 //!
 //! Directions are picked by the cosine or by the normals that the viewer sees (Heitz: Sampling the GGX Distribution of Visible
 //! Normals, JCGT 2018).

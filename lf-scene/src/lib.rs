@@ -13,6 +13,8 @@
 mod bsdf;
 mod bvh;
 mod capture;
+#[cfg(test)]
+mod chi_square;
 mod cube;
 mod distribution;
 mod embedded;

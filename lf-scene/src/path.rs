@@ -62,7 +62,7 @@ impl Tracer {
             bounces += 1;
             let worthwhile = bounces < limit || point.is_smooth() || !self.emitters().is_empty();
             let Some(scattered) = worthwhile.then(|| point.scatter(random)).flatten() else { return radiance };
-            if !path.go_on(&scattered, bounces, random) {
+            if !path.go_on(&scattered) || (!direct && bounces >= ROULETTE_FROM && !path.survives(random)) {
                 return radiance;
             }
             direction = scattered.towards;
@@ -132,17 +132,18 @@ impl Tracer {
 }
 
 impl Path {
-    /// Takes a direction; whether the path survives.
-    fn go_on(&mut self, scattered: &Scattered, bounces: u32, random: &mut Random) -> bool {
+    /// Takes a direction; whether any light would come back.
+    fn go_on(&mut self, scattered: &Scattered) -> bool {
         self.throughput *= scattered.weight;
         self.pdf = scattered.pdf;
         self.eta *= scattered.eta;
+        self.throughput.max_element() > 0.0
+    }
+
+    /// Russian roulette: paths that survive stand for those that do not.
+    fn survives(&mut self, random: &mut Random) -> bool {
         // Refraction scales radiance by 1/η² on the way in, and back on the way out.
-        let share = self.throughput.max_element() * self.eta * self.eta;
-        if bounces < ROULETTE_FROM {
-            return share > 0.0;
-        }
-        let survival = share.min(MAX_SURVIVAL);
+        let survival = (self.throughput.max_element() * self.eta * self.eta).min(MAX_SURVIVAL);
         self.throughput /= survival;
         random.uniform() < survival
     }

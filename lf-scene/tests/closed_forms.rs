@@ -92,7 +92,7 @@ fn integrating_sphere() {
         let shines = a.y > 0.8;
         all += f64::from(normal.length());
         lit += if shines { f64::from(normal.length()) } else { 0.0 };
-        let corner = |position: Vec3| lf_scene::Vertex { position, normal, uv: Vec2::ZERO };
+        let corner = |position: Vec3| lf_scene::Vertex { position, normal: -position, uv: Vec2::ZERO };
         builder.triangle([corner(a), corner(c), corner(b)], if shines { lamp } else { white });
     }
     let a = ALBEDO.as_dvec3();
