@@ -6,8 +6,8 @@
 //! along u and each row one along v, and the windows of all images tile one rectangle without gaps.
 //!
 //! In the limit of many cameras this keeps a quarter of the samples of a cube cell with planes on its faces. Exactly
-//! needed are 2/9 of them, since both slopes of a ray share the depth at which it left the cell; that set is not
-//! separable, and takes an index for each camera. With the planes through the cell's centre nothing can be left out so.
+//! needed are 2/9 of them, since both slopes of a ray share the depth at which it left the cell; that set
+//! ([`NeededTexels`](crate::NeededTexels)) is not separable, and takes an index for each camera. With the planes through the cell's centre nothing can be left out so.
 
 use alloc::vec::Vec;
 use core::ops::Range;
