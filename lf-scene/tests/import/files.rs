@@ -9,14 +9,14 @@ use lf_scene::{ImportError, ImportOptions, Imported, import_gltf_slice};
 use serde_json::{Value, json};
 
 /// A folder of its own for each test.
-pub fn folder(name: &str) -> PathBuf {
+pub(crate) fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::create_dir_all(&folder).unwrap();
     folder
 }
 
 /// A .glb file from its JSON and its binary chunk.
-pub fn glb(json: &Value, binary: &[u8]) -> Vec<u8> {
+pub(crate) fn glb(json: &Value, binary: &[u8]) -> Vec<u8> {
     let mut text = json.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     let mut data = binary.to_vec();
@@ -33,7 +33,7 @@ pub fn glb(json: &Value, binary: &[u8]) -> Vec<u8> {
 
 /// A square in the plane z = 0 with normals along +Z and texture coordinates (x, y), of two triangles with indices, under a
 /// node that moves it by 5 along x, and a camera 3 before it.
-pub fn square() -> (Value, Vec<u8>) {
+pub(crate) fn square() -> (Value, Vec<u8>) {
     let corners = [[0.0f32, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let positions = corners.iter().flat_map(|[x, y]| [*x, *y, 0.0]);
     let normals = corners.iter().flat_map(|_| [0.0, 0.0, 1.0]);
@@ -74,7 +74,7 @@ pub fn square() -> (Value, Vec<u8>) {
 }
 
 /// Adds a picture as image, texture and buffer view.
-pub fn add_picture(json: &mut Value, binary: &mut Vec<u8>, picture: &[u8], kind: &str) {
+pub(crate) fn add_picture(json: &mut Value, binary: &mut Vec<u8>, picture: &[u8], kind: &str) {
     let view = json["bufferViews"].as_array().unwrap().len();
     let place = json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": picture.len() });
     json["bufferViews"].as_array_mut().unwrap().push(place);
@@ -84,17 +84,17 @@ pub fn add_picture(json: &mut Value, binary: &mut Vec<u8>, picture: &[u8], kind:
     json["textures"] = json!([{ "source": 0 }]);
 }
 
-pub fn encoded(picture: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+pub(crate) fn encoded(picture: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut out = Cursor::new(Vec::new());
     picture.write_to(&mut out, format).unwrap();
     out.into_inner()
 }
 
-pub fn import(json: &Value, binary: &[u8]) -> Result<Imported, ImportError> {
+pub(crate) fn import(json: &Value, binary: &[u8]) -> Result<Imported, ImportError> {
     import_gltf_slice("made", &glb(json, binary), &ImportOptions::default())
 }
 
 /// The error as people see it.
-pub fn refusal(json: &Value, binary: &[u8]) -> String {
+pub(crate) fn refusal(json: &Value, binary: &[u8]) -> String {
     import(json, binary).map(|imported| imported.warnings).unwrap_err().to_string()
 }
