@@ -103,7 +103,8 @@ fn warn(path: &Path, warnings: &[String]) {
 /// An embedded scene in a panorama, whose light takes the place of the ambient term.
 fn under(scene: Scene, environment: Option<EnvironmentMap>) -> Scene {
     let Some(map) = environment else { return scene };
-    let lighting = Lighting { ambient: Vec3::ZERO, environment: Environment::Map(map.into()), ..scene.lighting().clone() };
+    let lighting =
+        Lighting { ambient: Vec3::ZERO, environment: Environment::Map(map.into()), ..scene.lighting().clone() };
     scene.with_lighting(lighting)
 }
 

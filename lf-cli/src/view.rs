@@ -1,5 +1,7 @@
 //! `lfslab view`: what a scene holds, and how it looks.
 
+use std::path::Path;
+
 use anyhow::{Result, bail};
 use glam::Vec3;
 use lf_math::Pinhole;
@@ -14,20 +16,29 @@ use crate::sources::{Loaded, find_camera};
 const FOV_Y: f32 = 0.872_664_6;
 
 pub(crate) fn run(args: &ViewArgs) -> Result<()> {
-    args.out.as_deref().map_or(Ok(()), check_writable)?;
+    if let Some(out) = &args.out {
+        check_writable(out)?;
+        is_exr(out)?;
+    }
     let loaded = Loaded::open(&args.scene, &args.light)?;
     let camera = camera(args, &loaded)?;
     print(&describe(&loaded).join("\n"))?;
     let Some(out) = &args.out else { return Ok(()) };
-    let is_exr = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
-    if !is_exr && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        bail!("cannot write {}: the picture's name must end in .png or .exr", out.display());
-    }
+    let is_exr = is_exr(out)?;
     let tracer = Tracer::new(loaded.scene).with_quality(args.light.quality());
     let bar = progress_bar(args.size.height.into(), "view", "rows");
     let picture = view(&tracer, &camera, &|done| bar.set_position(done));
     bar.finish_and_clear();
     if is_exr { write_exr(out, &picture) } else { write(out, &png(&display(&picture))?) }
+}
+
+/// Whether a picture is OpenEXR, else PNG, by its name.
+fn is_exr(out: &Path) -> Result<bool> {
+    match out.extension().map(|extension| extension.to_ascii_lowercase()) {
+        Some(extension) if extension == "exr" => Ok(true),
+        Some(extension) if extension == "png" => Ok(false),
+        _ => bail!("cannot write {}: the picture's name must end in .png or .exr", out.display()),
+    }
 }
 
 /// The camera that was asked for; else the scene's first; else one in the cell or the scene's middle, looking along −Z.

@@ -38,7 +38,7 @@ fn demo(scene: &str, reflector: &str) {
     let output = Command::new(env!("CARGO_BIN_EXE_lfslab")).args(arguments).output().unwrap();
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{stderr}");
-    assert!(stderr.contains("primitives are left out"), "what is not used is listed: {stderr}");
+    assert!(stderr.contains("triangles have no area and are left out"), "what is not used is listed: {stderr}");
     let report = std::fs::read(folder.path().join("report.json")).unwrap();
     let json: serde_json::Value = serde_json::from_slice(&report).unwrap();
     for reflector in ["sphere", reflector] {

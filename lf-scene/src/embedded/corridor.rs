@@ -27,7 +27,7 @@ const WIDENING: f32 = 0.6;
 pub fn scene() -> Scene {
     let mut builder = SceneBuilder::default();
     let lights = (0..SECTIONS).map(|section| add_section(&mut builder, section)).collect();
-    let lighting = Lighting { lights, ambient: Vec3::splat(0.3), environment: Environment::BLACK };
+    let lighting = Lighting { lights, ambient: Vec3::splat(0.45), environment: Environment::BLACK };
     builder.build("corridor", lighting).unwrap_or_else(|_| unreachable!("the corridor is made of finite triangles"))
 }
 
@@ -68,8 +68,8 @@ fn add_section(builder: &mut SceneBuilder, section: u32) -> Light {
     if section + 1 == SECTIONS {
         end(builder, half);
     }
-    let position = Vec3::new(0.3 * half, 0.8 * half, 0.5 * (near + far));
-    Light::Point { position, intensity: Vec3::splat(1.5 * PI * half * (far - near)) }
+    let position = Vec3::new(0.2 * half, 0.5 * half, 0.5 * (near + far));
+    Light::Point { position, intensity: Vec3::splat(0.25 * PI * half * half) }
 }
 
 /// What lies between an opening and the walls around it; without an opening, a wall.

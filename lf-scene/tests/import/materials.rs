@@ -38,7 +38,9 @@ fn factors_arrive() {
 
 #[test]
 fn transmission_becomes_glass() {
-    let glass = |extensions: Value| material(json!({ "pbrMetallicRoughness": { "roughnessFactor": 0 }, "extensions": extensions }));
+    let glass = |extensions: Value| {
+        material(json!({ "pbrMetallicRoughness": { "roughnessFactor": 0 }, "extensions": extensions }))
+    };
     let clear = json!({ "transmissionFactor": 1.0 });
     let (pane, _) = glass(json!({ "KHR_materials_transmission": clear }));
     assert_eq!(pane.scattering, Scattering::Glass { ior: 1.5, thin: true });
@@ -72,7 +74,9 @@ fn textures_have_alpha_and_the_right_encoding() {
     // Alpha ¼ × factor ½ is below the cutoff of ¼: the picture's own alpha is compared with ½.
     assert_eq!(material.alpha_cutoff, Some(0.5));
     assert_eq!(material.emission.color(Vec2::new(0.75, 0.5)), Vec3::Z * 2.0);
-    let Scattering::MetallicRoughness { texture: Some(texture), .. } = &material.scattering else { panic!("{material:?}") };
+    let Scattering::MetallicRoughness { texture: Some(texture), .. } = &material.scattering else {
+        panic!("{material:?}")
+    };
     assert_eq!(texture.encoding, ColorEncoding::Linear);
     json["materials"][0]["alphaMode"] = json!("BLEND");
     let blended = import(&json, &binary).unwrap();
@@ -100,9 +104,12 @@ fn pictures_of_all_kinds_are_decoded() {
 fn coordinates_follow_the_texture_and_its_transform() {
     let (mut json, mut binary) = square();
     add_picture(&mut json, &mut binary, &encoded(&picture(), ImageFormat::Png), "image/png");
-    let uv_of = |json: &Value, binary: &[u8]| import(json, binary).map(|i| (i.scene.triangles()[0].0.map(|v| v.uv), i.warnings));
+    let uv_of = |json: &Value, binary: &[u8]| {
+        import(json, binary).map(|i| (i.scene.triangles()[0].0.map(|v| v.uv), i.warnings))
+    };
     let transform = json!({ "KHR_texture_transform": { "offset": [0.5, 0.25], "scale": [2, 3] } });
-    json["materials"][0] = json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "extensions": transform } } });
+    json["materials"][0] =
+        json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "extensions": transform } } });
     let (uvs, _) = uv_of(&json, &binary).unwrap();
     assert_eq!(uvs, [Vec2::new(0.5, 0.25), Vec2::new(2.5, 0.25), Vec2::new(2.5, 3.25)]);
     // A quarter turn: what lay to the right lies above, where v is less.
@@ -112,7 +119,10 @@ fn coordinates_follow_the_texture_and_its_transform() {
     assert!(uvs[1].distance(Vec2::NEG_Y) < 1e-6 && uvs[2].distance(Vec2::new(1.0, -1.0)) < 1e-6, "{uvs:?}");
     // A second set, which another texture does not use; and a texture that ends.
     json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(4);
-    json["accessors"].as_array_mut().unwrap().push(json!({ "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC2" }));
+    json["accessors"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({ "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC2" }));
     json["samplers"] = json!([{ "wrapS": 33071 }]);
     json["textures"][0]["sampler"] = json!(0);
     json["materials"][0] = json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "texCoord": 1 },
@@ -120,7 +130,10 @@ fn coordinates_follow_the_texture_and_its_transform() {
     binary[12..16].copy_from_slice(&1.5f32.to_le_bytes());
     let (uvs, warnings) = uv_of(&json, &binary).unwrap();
     assert_eq!(uvs[1], Vec2::new(0.0, 1.5), "two floats apart, not three");
-    assert!(warnings.iter().any(|w| w.contains("instead of their own")) && warnings.iter().any(|w| w.contains("does not repeat")));
+    assert!(
+        warnings.iter().any(|w| w.contains("instead of their own"))
+            && warnings.iter().any(|w| w.contains("does not repeat"))
+    );
 }
 
 #[test]
@@ -131,7 +144,11 @@ fn numbers_out_of_range_are_mended_and_infinite_ones_refused() {
     }));
     assert_eq!(material.base, Surface::Uniform(Vec3::new(1.0, 0.0, 0.5)));
     assert_eq!(material.scattering, Scattering::MetallicRoughness { metallic: 1.0, roughness: 0.0, texture: None });
-    assert!(imported.warnings.iter().any(|warning| warning.ends_with("brought into it (5)")), "{:?}", imported.warnings);
+    assert!(
+        imported.warnings.iter().any(|warning| warning.ends_with("brought into it (5)")),
+        "{:?}",
+        imported.warnings
+    );
     let (mut json, binary) = square();
     json["materials"][0]["emissiveFactor"] = json!([1e300, 0, 0]);
     assert!(refusal(&json, &binary).contains("material 0"));
