@@ -68,6 +68,7 @@ pub enum ImportError {
 
 impl ImportError {
     /// A part of the file that breaks the format.
+    #[expect(clippy::needless_pass_by_value, reason = "takes errors and texts alike, as map_err hands them over")]
     pub(crate) fn malformed(place: impl Into<String>, problem: impl ToString) -> Self {
         Self::Malformed { place: place.into(), problem: problem.to_string() }
     }

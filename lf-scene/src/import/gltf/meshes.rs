@@ -146,7 +146,7 @@ impl Vertices {
         };
         let [a, b, c] = indices.map(corner);
         let corners = [a?, b?, c?];
-        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+        let [a, b, c] = corners.map(Vec3::as_dvec3);
         let Some(flat) = (b - a).cross(c - a).try_normalize() else { return Ok(None) };
         let vertex = |(index, position): (u32, Vec3)| {
             let normal = self.normals.get(index as usize).copied().and_then(normalized);
