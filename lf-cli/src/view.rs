@@ -1,5 +1,6 @@
 //! `lfslab view`: what a scene holds, and how it looks.
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use anyhow::{Result, bail};
@@ -34,7 +35,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<()> {
 
 /// Whether a picture is OpenEXR, else PNG, by its name.
 fn is_exr(out: &Path) -> Result<bool> {
-    match out.extension().map(|extension| extension.to_ascii_lowercase()) {
+    match out.extension().map(OsStr::to_ascii_lowercase) {
         Some(extension) if extension == "exr" => Ok(true),
         Some(extension) if extension == "png" => Ok(false),
         _ => bail!("cannot write {}: the picture's name must end in .png or .exr", out.display()),
