@@ -87,11 +87,13 @@ fn seeds_and_rays_have_noise_of_their_own() {
     };
     let rays = rays(1.0, Vec3::ZERO);
     let (one, other) = (answers(&tracer(1), &rays), answers(&tracer(2), &rays));
-    let same = one.iter().zip(&other).filter(|(a, b)| a.radiance == b.radiance).count();
-    assert!(same < 10, "{same} of 400");
+    // What is not random, as the sky, is the same.
+    let random = |estimate: &Estimate| estimate.standard_error != Vec3::ZERO;
+    let same = one.iter().zip(&other).filter(|(a, b)| random(a) && a.radiance == b.radiance).count();
+    assert!(same == 0, "{same} of 400");
     let apart = |a: &Estimate, b: &Estimate| (a.radiance - b.radiance).length();
-    let neighbours = one.windows(2).filter(|pair| apart(&pair[0], &pair[1]) == 0.0).count();
-    assert!(neighbours < 10, "{neighbours} of 399");
+    let neighbours = one.windows(2).filter(|pair| random(&pair[0]) && apart(&pair[0], &pair[1]) == 0.0).count();
+    assert!(neighbours == 0 && one.iter().filter(|estimate| random(estimate)).count() > 200, "{neighbours} of 399");
 }
 
 /// Powers of two: the same bits.
@@ -152,17 +154,17 @@ fn far_from_the_origin_no_surface_shades_itself() {
             corner.triangle([a, b, c].map(|position| Vertex { position, normal, uv: Vec2::ZERO }), *material);
         }
         corner.material(Material::diffuse(Vec3::ONE));
-        let tracer = with_samples(corner.build("ball", uniform(Vec3::ONE)).unwrap(), 100, 16);
+        let tracer = with_samples(corner.build("ball", uniform(Vec3::ONE)).unwrap(), 100, 64);
         let mut sum = 0.0;
         for i in 0..2000 {
             let (y, angle) = (1.0 - (2.0 * i as f32 + 1.0) / 2000.0, 2.399_963 * i as f32);
             let r = (1.0 - y * y).sqrt();
             let outwards = Vec3::new(r * angle.cos(), y, r * angle.sin());
             let estimate = tracer.estimate(place + outwards * 3.0 * unit, -outwards);
-            assert!(estimate.radiance.x > 0.9, "{place}: {estimate:?}");
+            assert!(estimate.radiance.x > 0.7, "{place}: {estimate:?}");
             sum += f64::from(estimate.radiance.x);
         }
-        assert!((sum / 2000.0 - 1.0).abs() < 2e-3, "{place}: {}", sum / 2000.0);
+        assert!((sum / 2000.0 - 1.0).abs() < 3e-3, "{place}: {}", sum / 2000.0);
     }
 }
 
@@ -201,10 +203,14 @@ fn leaning_normals_do_not_leak() {
     let vertex =
         |x: f32, z: f32| Vertex { position: Vec3::new(x, 0.0, z), normal: Vec3::new(1.0, 0.2, 0.0), uv: Vec2::ZERO };
     builder.triangle([vertex(-1.0, -1.0), vertex(0.0, 2.0), vertex(1.0, -1.0)], white);
-    let below = Light::Sun { towards: Vec3::new(0.8, -0.6, 0.0), irradiance: Vec3::ONE };
-    let tracer = Tracer::new(builder.build("leaning", dark(vec![below])).unwrap());
-    assert_eq!(tracer.trace(Vec3::new(0.0, 1.0, 0.1), Vec3::new(0.1, -1.0, 0.0)).radiance, Vec3::ZERO);
-    assert!(tracer.trace(Vec3::new(0.0, -1.0, 0.1), Vec3::new(0.1, 1.0, 0.0)).radiance.x > 0.0);
+    let scene = builder.build("leaning", dark(vec![])).unwrap();
+    // Both suns are in front of the normal, one is behind the triangle.
+    for (height, lit) in [(0.6, true), (-0.1, false)] {
+        let sun = Light::Sun { towards: Vec3::new(0.8, height, 0.0).normalize(), irradiance: Vec3::ONE };
+        let tracer = Tracer::new(scene.clone().with_lighting(dark(vec![sun])));
+        let traced = tracer.trace(Vec3::new(0.0, 1.0, 0.1), Vec3::new(0.1, -1.0, 0.0));
+        assert_eq!(traced.radiance.x > 0.0, lit, "{height}");
+    }
 }
 
 proptest! {
