@@ -1,12 +1,26 @@
 //! Scenes, a ray tracer and the capture of environment light fields: the independent oracle of the other crates.
 //!
-//! A [`Scene`] is triangles with textured diffuse or emissive materials and simple lights, made in code
-//! ([`EMBEDDED`]) or read from glTF ([`import_gltf`]). A [`Tracer`] answers one ray at a time. From it come the texels of
-//! slabs ([`TexelSampler`], [`capture_slabs`]), cube maps ([`trace_cube`], [`capture_cube`]) and the reference pictures ([`mod@reference`]).
+//! A [`Scene`] is triangles with textured materials, lights and an environment, made in code ([`EMBEDDED`]) or read from glTF
+//! ([`import_gltf`]). A [`Tracer`] answers one ray at a time. From it come the texels of slabs ([`TexelSampler`], [`capture_slabs`]), cube
+//! maps ([`trace_cube`], [`capture_cube`]) and the reference pictures ([`mod@reference`]).
 //! [`reflectors`] holds the objects to look at.
 //!
-//! Shading is direct light only: point lights and a sun with hard shadows over an ambient term. World space is glTF's:
-//! right-handed, +Y up, metres; colour is linear Rec. 709.
+//! # The tracer
+//!
+//! [`Quality`] says which light is traced: direct light over an ambient term, or all light by path tracing with next-event
+//! estimation, multiple importance sampling and Russian roulette. Light comes from points, spots and suns, glowing triangles and
+//! the [`Environment`]; surfaces are diffuse, glTF 2.0's metallic-roughness (GGX), mirrors and clear glass ([`Scattering`]), with holes
+//! where a picture's alpha says so. Every answer comes with its standard error ([`Estimate`]).
+//!
+//! An answer is a function of scene, [`Quality`] and ray: the random numbers of a sample are a hash of seed, sample and ray. Hits are
+//! watertight, and rays leave surfaces from where rounding cannot bring them back, so that neither the unit of length nor the distance
+//! from the origin matters (a power of two changes no bit of the radiance). Origins of rays should be within about the largest coordinate of
+//! the scene; from farther away a ray may miss an edge.
+//!
+//! Not traced: rough glass, light through glass on its way to a point or a sun (glass casts a shadow; what passes it is found from the
+//! other side, for lights with extent), dispersion, polarisation, media.
+//!
+//! World space is glTF's: right-handed, +Y up, metres; colour is linear Rec. 709. Radiance is in W/(m²·sr).
 
 #![forbid(unsafe_code)]
 

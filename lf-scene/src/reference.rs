@@ -9,7 +9,7 @@ use lf_math::{Cell, Image, Pinhole, Ray, TriangleMesh, normalized, reflect};
 use rayon::prelude::*;
 
 use crate::bvh::{TriangleBvh, interpolate, plane_normal};
-use crate::capture::trace_in_cell_space;
+use crate::quality::Estimate;
 use crate::tracer::Tracer;
 
 /// A reflective mesh that can be hit by rays. Cell space.
@@ -23,6 +23,8 @@ pub struct Mirror {
 pub struct Reference {
     /// Radiance in linear RGB where the mirror is, black elsewhere.
     pub radiance: Image<Vec3>,
+    /// Its standard error ([`Estimate::standard_error`]), 0 where the mirror is not.
+    pub standard_error: Image<Vec3>,
     /// Where the mirror is.
     pub mask: Image<bool>,
 }
@@ -58,15 +60,23 @@ impl Mirror {
 #[must_use]
 pub fn render(tracer: &Tracer, cell: &Cell, mirror: &Mirror, camera: &Pinhole) -> Reference {
     let seen = per_pixel(camera, |ray| {
-        mirror.reflected(ray).map(|reflected| trace_in_cell_space(tracer, cell, &reflected).radiance)
+        mirror.reflected(ray).map(|reflected| {
+            let Estimate { radiance, standard_error, .. } = estimate_in_cell_space(tracer, cell, &reflected);
+            (radiance, standard_error)
+        })
     });
-    Reference { radiance: seen.map(|radiance| radiance.unwrap_or(Vec3::ZERO)), mask: seen.map(|r| r.is_some()) }
+    let (radiance, standard_error) = (seen.map(|s| s.unwrap_or_default().0), seen.map(|s| s.unwrap_or_default().1));
+    Reference { radiance, standard_error, mask: seen.map(|s| s.is_some()) }
 }
 
 /// Traces the scene as `camera` sees it without any mirror: radiance in linear RGB, on all threads.
 #[must_use]
 pub fn background(tracer: &Tracer, cell: &Cell, camera: &Pinhole) -> Image<Vec3> {
-    per_pixel(camera, |ray| trace_in_cell_space(tracer, cell, ray).radiance)
+    per_pixel(camera, |ray| estimate_in_cell_space(tracer, cell, ray).radiance)
+}
+
+fn estimate_in_cell_space(tracer: &Tracer, cell: &Cell, ray: &Ray) -> Estimate {
+    tracer.estimate(cell.world_from_cell(ray.origin).as_vec3(), ray.direction)
 }
 
 fn per_pixel<T: Copy + Default + Send>(camera: &Pinhole, value: impl Fn(&Ray) -> T + Sync) -> Image<T> {
@@ -81,7 +91,24 @@ fn per_pixel<T: Copy + Default + Send>(camera: &Pinhole, value: impl Fn(&Ray) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reflectors;
+    use crate::{Illumination, Quality, museum, reflectors};
+
+    /// The error is told where the mirror is, and falls with the root of the samples.
+    #[test]
+    fn pictures_know_their_noise() {
+        let mirror = Mirror::new(reflectors::sphere(3).fitted(Vec3::ZERO, 0.4).unwrap());
+        let camera = Pinhole::look_at(Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, 0.5, 16, 16).unwrap();
+        let noise = |samples: u32| {
+            let quality = Quality { illumination: Illumination::Global { max_bounces: 3 }, samples, seed: 0 };
+            let tracer = Tracer::new(museum::scene()).with_quality(quality);
+            let picture = render(&tracer, &museum::cell(), &mirror, &camera);
+            let pairs = picture.mask.texels().iter().zip(picture.standard_error.texels());
+            assert!(pairs.clone().all(|(&seen, error)| seen || *error == Vec3::ZERO));
+            pairs.map(|(_, error)| error.y).sum::<f32>()
+        };
+        let ratio = noise(16) / noise(256);
+        assert!((3.0..5.0).contains(&ratio), "{ratio}");
+    }
 
     #[test]
     fn a_fine_sphere_reflects_like_the_exact_one() {
