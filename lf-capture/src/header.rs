@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DVec3, Vec3};
 use lf_compress::PackOptions;
 use lf_format::{Metadata, TexelEncoding};
-use lf_math::{Cell, Face, LightFieldGeometry, SampledAxis, Slab};
+use lf_math::{Cell, Face, GeometryError, LightFieldGeometry, SampledAxis, Slab};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -55,6 +55,9 @@ struct AxisText {
     step: f32,
     count: u32,
 }
+
+/// Samples that an axis may have in a file.
+const MAX_COUNT: u32 = 1 << 16;
 
 const ENCODINGS: [(&str, TexelEncoding); 2] = [("bc1", TexelEncoding::Bc1), ("rgba8", TexelEncoding::Rgba8)];
 
@@ -141,7 +144,11 @@ impl SlabText {
     }
 
     fn slab(&self) -> Result<Slab, CaptureError> {
-        let face = Face::from_index(self.face).ok_or(lf_math::GeometryError::SlabOrder)?;
+        let face = Face::from_index(self.face).ok_or(GeometryError::SlabOrder)?;
+        // The file format has no more; this is asked before anything is as long as a count.
+        if let Some(&AxisText { count, .. }) = self.axes.iter().find(|axis| axis.count > MAX_COUNT) {
+            return Err(GeometryError::TooMany { what: "sample count", count, max: MAX_COUNT }.into());
+        }
         let axis = |i: usize| SampledAxis::new(self.axes[i].first, self.axes[i].step, self.axes[i].count);
         Ok(Slab::new(face, self.plane, [axis(0)?, axis(1)?], [axis(2)?, axis(3)?], self.focal_depth)?)
     }

@@ -105,17 +105,23 @@ impl Journal {
         bytes.extend((json.len() as u32).to_le_bytes());
         bytes.extend(xxh64(&json, 0).to_le_bytes());
         bytes.extend(json);
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create_new(true)
-            .open(path)
-            .map_err(io_error("begin the journal", path))?;
-        lock(&file, path)?;
-        file.write_all(&bytes).and_then(|()| file.sync_all()).map_err(io_error("write", path))?;
+        let file = begin(path, &bytes).map_err(io_error("begin the journal", path))?;
         let end = bytes.len() as u64;
         let records = BTreeMap::new();
         Ok(Self { path: path.to_owned(), file, header, plan: plan.clone(), shard, records, end })
+    }
+
+    /// Deletes what is at a path, a journal or not, unless some run is writing it. If nothing is there, nothing is done.
+    ///
+    /// # Errors
+    /// [`CaptureError::InUse`], [`CaptureError::Io`].
+    pub fn discard(path: &Path) -> Result<(), CaptureError> {
+        match OpenOptions::new().write(true).open(path) {
+            Ok(file) => lock(&file, path)?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            Err(error) => return Err(io_error("remove", path)(error)),
+        }
+        fs::remove_file(path).map_err(io_error("remove", path))
     }
 
     /// Opens a journal that some run of the same capture left, to go on with it.
@@ -228,6 +234,23 @@ impl Journal {
         read(&mut self.file).map_err(io_error("read", &self.path))?;
         Ok(Some((record.packings[place], bytes)))
     }
+}
+
+/// A new file that appears under its name with these bytes and its lock held, or not at all.
+fn begin(path: &Path, bytes: &[u8]) -> io::Result<File> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    // What a kill leaves under such a name is swept by whoever next writes a file there.
+    builder.prefix(".lfslab-").suffix(".tmp");
+    // Without this the file could be read by its owner only. The system takes the umask off.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder)?;
+    // Nobody else knows its name; where there are no locks, none is needed.
+    let _ = file.as_file().try_lock();
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist_noclobber(path).map_err(|error| error.error)
 }
 
 fn lock(file: &File, path: &Path) -> Result<(), CaptureError> {

@@ -182,6 +182,31 @@ fn a_journal_that_ends_anywhere_goes_on_to_the_same_bytes() {
     }
 }
 
+/// Headers whose checksum is right and whose numbers are not.
+#[test]
+fn headers_are_not_believed() {
+    let (tracer, folder) = (Tracer::new(museum::scene()), TempDir::new().unwrap());
+    let path = folder.path().join("x.part");
+    drop(Journal::create(&path, &plan(&tracer), Shard::WHOLE).unwrap());
+    let json = String::from_utf8(fs::read(&path).unwrap()[20..].to_vec()).unwrap();
+    for (from, to) in [
+        ("\"count\": 260", "\"count\": 16777216"),
+        ("\"count\": 260", "\"count\": 0"),
+        ("\"face\": 0", "\"face\": 9"),
+        ("\"encoding\": \"bc1\"", "\"encoding\": \"bc9\""),
+        ("\"shard\": 1", "\"shard\": 2"),
+        ("\"whole\"", "\"hole\""),
+    ] {
+        let json = json.replacen(from, to, 1);
+        assert!(json.contains(to), "{from}");
+        let checksum = xxhash_rust::xxh64::xxh64(json.as_bytes(), 0).to_le_bytes();
+        let bytes = [b"LFSPART1", &(json.len() as u32).to_le_bytes()[..], &checksum, json.as_bytes()].concat();
+        fs::write(&path, bytes).unwrap();
+        let error = Journal::open(&path).unwrap_err();
+        assert!(matches!(error, CaptureError::NotAJournal { .. }), "{to}: {error}");
+    }
+}
+
 fn shard(number: u32) -> Shard {
     Shard::new(number, 3).unwrap()
 }
@@ -254,7 +279,9 @@ fn a_journal_is_resumed_by_its_own_capture_alone() {
     let (plan, path) = (plan(&tracer), folder.path().join("x.part"));
     let journal = Journal::create(&path, &plan, Shard::WHOLE).unwrap();
     assert!(matches!(Journal::resume(&path, &plan, Shard::WHOLE), Err(CaptureError::InUse { .. })));
+    assert!(matches!(Journal::discard(&path), Err(CaptureError::InUse { .. })));
     drop(journal);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
     assert!(matches!(Journal::create(&path, &plan, Shard::WHOLE), Err(CaptureError::Io { .. })));
     let refused = |plan: &Plan, shard| Journal::resume(&path, plan, shard).unwrap_err().to_string();
     assert!(refused(&plan, shard(1)).contains("shards is 1 there and 3 here"));
@@ -277,6 +304,9 @@ fn a_journal_is_resumed_by_its_own_capture_alone() {
     let error = Journal::resume(&path, &survey(&darker), Shard::WHOLE).unwrap_err().to_string();
     assert!(error.contains("the scene differs"), "{error}");
     assert!(Journal::resume(&path, &survey(&dark), Shard::WHOLE).is_ok());
+    Journal::discard(&path).unwrap();
+    Journal::discard(&path).unwrap();
+    assert!(!path.exists());
 }
 
 /// A box of half extent 3 around the museum's cell, glowing.

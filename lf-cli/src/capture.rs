@@ -84,7 +84,7 @@ pub(crate) fn capture_to(source: &Source, sampling: &Sampling, options: Options,
     let start = Instant::now();
     let plan = survey(source, sampling, options)?;
     let path = journal_path(out, Shard::WHOLE);
-    remove(&path)?;
+    Journal::discard(&path)?;
     let mut journal = begin(&path, &plan, Shard::WHOLE)?;
     trace(source, &mut journal, &AtomicBool::new(false))?;
     let totals = journal.totals();
@@ -122,21 +122,12 @@ fn journal_path(out: &Path, shard: Shard) -> PathBuf {
 /// Sees to it that no journal is in the way, unless it is to be resumed.
 fn make_room(args: &CaptureArgs, path: &Path) -> Result<()> {
     if args.restart {
-        return remove(path);
+        return Ok(Journal::discard(path)?);
     }
     if !args.resume && path.exists() {
         bail!("{} holds an unfinished capture: --resume goes on with it, --restart begins anew", path.display());
     }
     Ok(())
-}
-
-fn remove(journal: &Path) -> Result<()> {
-    match std::fs::remove_file(journal) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            Err(error).with_context(|| format!("cannot remove {}", journal.display()))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// A flag that is set by Ctrl-C or a polite kill; the second one ends the program at once.

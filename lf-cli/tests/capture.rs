@@ -102,6 +102,7 @@ fn ctrl_c_leaves_what_can_be_resumed_and_says_how() {
     let mut child = command(folder.path(), &["--threads", "1"]).spawn().unwrap();
     wait_for(&mut child, &journal, 6000);
     fails(&run(folder.path(), &["--resume"]), &["is in use", "wait"]);
+    fails(&run(folder.path(), &["--restart"]), &["is in use"]);
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("there is a kill");
     assert!(kill.success());
     let output = child.wait_with_output().unwrap();
