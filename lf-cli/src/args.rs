@@ -15,6 +15,7 @@ use lf_math::PlanePlacement;
 use crate::capture_args::{CaptureArgs, CubemapArgs, MergeArgs};
 use crate::exchange_args::{ExportArgs, ImportArgs};
 use crate::scene_args::{SceneArgs, ViewArgs};
+use crate::plan_args::PlanArgs;
 
 /// Reflections with parallax from light field slabs: capture, compress, inspect and render them.
 #[derive(Debug, Parser)]
@@ -36,6 +37,8 @@ pub(crate) enum Command {
     Merge(MergeArgs),
     /// Trace cube maps of radiance and distance (OpenEXR)
     Cubemap(CubemapArgs),
+    /// List the pictures that any other renderer has to render, with ready scripts; `import` makes a .lfslab file of them
+    Plan(PlanArgs),
     /// Draw a mirror that reflects a .lfslab file
     Render(RenderArgs),
     /// Show what a .lfslab file holds
@@ -46,7 +49,7 @@ pub(crate) enum Command {
     Crop(CropArgs),
     /// Write a light field in another program's format
     Export(ExportArgs),
-    /// Make a .lfslab file of pictures from a camera grid
+    /// Make a .lfslab file of pictures from a camera grid, or of those of a plan
     Import(ImportArgs),
 }
 

@@ -17,6 +17,7 @@ use lf_math::{Cell, Coverage, SlabTexels};
 use crate::exchange_args::{ExportArgs, ExportFormat, ImportArgs};
 use crate::input::{MAX_DECODED_BYTES, load, open};
 use crate::output::{check_writable, megabytes, print, write};
+use crate::plan;
 
 /// zstd's level in KTX2 files.
 const KTX2_LEVEL: i32 = 19;
@@ -106,6 +107,12 @@ fn one_slab<'a, T: Texel>(args: &ExportArgs, field: &LightField<'a, T>) -> Resul
 
 pub(crate) fn run_import(args: &ImportArgs) -> Result<()> {
     check_writable(&args.out)?;
+    if let Some(plan) = plan::plan_file(args) {
+        return plan::import(args, &plan);
+    }
+    if args.from_plan.srgb {
+        bail!("--srgb is for pictures of a plan; give it by --plan");
+    }
     let imported = import(&args.path, &options(args)?)?;
     for note in &imported.notes {
         eprintln!("note: {note}");
@@ -158,7 +165,8 @@ fn encode(args: &ImportArgs, imported: &Imported) -> Result<PackedLightField> {
     }
 }
 
-fn metadata(args: &ImportArgs) -> Result<Metadata> {
+/// What is said about the file, and by whom.
+pub(crate) fn metadata(args: &ImportArgs) -> Result<Metadata> {
     let mut metadata = Metadata::new();
     metadata.insert("generator", concat!("lfslab ", env!("CARGO_PKG_VERSION")))?;
     metadata.insert("scene", name(&args.path))?;

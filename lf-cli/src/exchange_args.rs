@@ -8,6 +8,7 @@ use lf_exchange::QuiltLayout;
 use lf_math::Face;
 
 use crate::args::{CellArg, EncodingArgs, FileArgs};
+use crate::plan_args::PlanImportArgs;
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
@@ -56,7 +57,7 @@ pub(crate) enum ExportFormat {
 
 #[derive(Debug, Args)]
 pub(crate) struct ImportArgs {
-    /// A folder of pictures (out_RR_CC_Y_X, RR_CC or a benchmark scene), or a quilt
+    /// A folder of pictures (of `lfslab plan`, out_RR_CC_Y_X, RR_CC or a benchmark scene), or a quilt
     #[arg(value_name = "PATH")]
     pub(crate) path: PathBuf,
     /// The file to write
@@ -77,8 +78,8 @@ pub(crate) struct ImportArgs {
     /// Distance between neighbouring cameras, metres [default: what the files say, else 0.01]
     #[arg(long, value_name = "METRES")]
     pub(crate) spacing: Option<f64>,
-    /// Distance of the plane on which all pictures agree, metres, for rectified pictures [default: what the files say, else
-    /// infinite]
+    /// Distance of the plane on which all pictures agree, metres, for rectified pictures; with a plan, of the slabs' focal planes
+    /// from the camera planes [default: what the files say, else infinite]
     #[arg(long, value_name = "METRES")]
     pub(crate) focal_plane: Option<f64>,
     /// The camera plane's coordinate along the face's axis, world space, metres
@@ -106,6 +107,8 @@ pub(crate) struct ImportArgs {
     #[arg(long, value_name = "TEXT")]
     pub(crate) attribution: Option<String>,
     #[command(flatten)]
+    pub(crate) from_plan: PlanImportArgs,
+    #[command(flatten)]
     pub(crate) encoding: EncodingArgs,
     /// How much memory the pictures may take, in MiB
     #[arg(long, value_name = "MIB", default_value_t = 4096)]
@@ -128,7 +131,7 @@ impl FromStr for QuiltArg {
     }
 }
 
-fn face(text: &str) -> Result<Face, String> {
+pub(crate) fn face(text: &str) -> Result<Face, String> {
     let found = Face::ALL.into_iter().find(|face| face.name().eq_ignore_ascii_case(text));
     found.ok_or_else(|| "expected +x, -x, +y, -y, +z or -z".to_owned())
 }

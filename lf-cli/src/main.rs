@@ -18,6 +18,8 @@ mod info;
 mod input;
 mod output;
 mod pictures;
+mod plan;
+mod plan_args;
 mod render;
 mod scene_args;
 mod sources;
@@ -49,6 +51,7 @@ fn run(command: &Command) -> Result<()> {
         Command::View(args) => view::run(args),
         Command::Merge(args) => capture::run_merge(args),
         Command::Cubemap(args) => cubemap::run(args),
+        Command::Plan(args) => plan::run(args),
         Command::Render(args) => render::run(args),
         Command::Info(args) => info::run(args),
         Command::Validate(args) => validate::run(args),

@@ -8,6 +8,7 @@
 //! | 4D Light Field Benchmark (HCI) | [`write_hci`] | [`import_hci`] |
 //! | Looking Glass quilt | [`write_quilt`] | [`import_quilt`] |
 //! | `transforms.json` of NeRF tools, with pictures | [`write_transforms`] | – |
+//! | pictures by POV-Ray, Mitsuba, Blender or any other renderer | the cameras: [`Plan::write`] | [`import_plan`] |
 //!
 //! **Pictures are true pictures.** A slab's images may be mirrored, upside down or transposed against what a camera sees;
 //! all that leaves or enters here as pictures goes through [`PictureBasis`], which says how for each face.
@@ -31,6 +32,7 @@ mod grid;
 mod hci;
 mod import;
 pub mod ktx2;
+mod plan;
 mod quilt;
 mod texel;
 mod transforms;
@@ -42,6 +44,7 @@ pub use field::{LightField, SlabPictures};
 pub use grid::{GridNaming, face_folder, write_grid, write_slab_grid};
 pub use hci::{HciScene, write_hci};
 pub use import::{ImportOptions, Imported, Lens, import, import_grid, import_hci, import_quilt};
+pub use plan::{ImportedPlan, PictureFrame, Plan, PlanCamera, PlanImportOptions, PlanTexels, World, import_plan};
 pub use quilt::{QuiltLayout, write_quilt};
 pub use texel::{Texel, Texels};
 pub use transforms::{transforms, write_transforms};

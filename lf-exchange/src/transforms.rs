@@ -6,11 +6,13 @@
 use std::fs;
 use std::path::Path;
 
+use glam::{DMat3, DVec3};
 use serde_json::{Map, Value, json};
 
 use crate::field::SlabPictures;
 use crate::grid::{GridNaming, face_folder, write_grid};
-use crate::{ExchangeError, Intrinsics, LightField, Texel};
+use crate::plan::PlanCamera;
+use crate::{ExchangeError, Intrinsics, LightField, PictureBasis, Plan, Texel};
 
 /// Writes `transforms.json` and the pictures of all slabs (as [`write_grid`] does, by rows and columns) to `folder`.
 ///
@@ -57,16 +59,32 @@ fn frames<T: Texel>(pictures: &SlabPictures<'_, T>, own_camera: bool) -> Vec<Val
     let frame = |(column, row)| {
         let mut fields = if own_camera { camera_fields(&pictures.intrinsics()) } else { Map::new() };
         fields.insert("file_path".into(), json!(format!("{folder}/{row:02}_{column:02}.{}", T::EXTENSION)));
-        fields.insert("transform_matrix".into(), json!(matrix(pictures, column, row)));
+        fields.insert(
+            "transform_matrix".into(),
+            json!(matrix(pictures.basis().world_from_camera(), pictures.position(column, row))),
+        );
         Value::Object(fields)
     };
     pictures.stored_cameras().map(frame).collect()
 }
 
 /// World space from camera space, row by row.
-fn matrix<T: Texel>(pictures: &SlabPictures<'_, T>, column: u32, row: u32) -> [[f64; 4]; 4] {
-    let rotation = pictures.basis().world_from_camera();
-    let eye = pictures.position(column, row);
+fn matrix(rotation: DMat3, eye: DVec3) -> [[f64; 4]; 4] {
     let line = |i: usize| [rotation.x_axis[i], rotation.y_axis[i], rotation.z_axis[i], eye[i]];
     [line(0), line(1), line(2), [0.0, 0.0, 0.0, 1.0]]
+}
+
+/// The same for the pictures of a plan that are yet to be rendered, as PNG. In this project's world, whatever the plan's is.
+pub(crate) fn plan_transforms(plan: &Plan) -> Value {
+    let lfslab_from_world = plan.world().world_from_lfslab().transpose();
+    let rotations: Vec<DMat3> =
+        plan.geometry().slabs().iter().map(|slab| PictureBasis::new(slab.face()).world_from_camera()).collect();
+    let frame = |camera: PlanCamera| {
+        let file = plan.picture_name(camera.frame, "png");
+        let matrix = rotations.get(camera.slab).map(|rotation| matrix(*rotation, lfslab_from_world * camera.position));
+        json!({ "file_path": format!("{}/{file}", Plan::PICTURES), "transform_matrix": matrix })
+    };
+    let mut root = camera_fields(&plan.intrinsics());
+    root.insert("frames".into(), plan.cameras().map(frame).collect());
+    Value::Object(root)
 }

@@ -83,7 +83,7 @@ fn reader(path: &Path) -> Result<ImageReader<BufReader<File>>, ExchangeError> {
 }
 
 fn wrong_size(path: &Path, have: [usize; 2], want: [u32; 2]) -> ExchangeError {
-    let what = format!("it has {}×{} pixels, the first picture {}×{}", have[0], have[1], want[0], want[1]);
+    let what = format!("it has {}×{} pixels, expected are {}×{}", have[0], have[1], want[0], want[1]);
     ExchangeError::malformed(path, what)
 }
 

@@ -85,7 +85,7 @@ fn no_pictures(folder: &Path) -> ExchangeError {
 }
 
 /// The stems and paths of the picture files in a folder.
-fn scan(folder: &Path) -> Result<Vec<(String, PathBuf)>, ExchangeError> {
+pub(crate) fn scan(folder: &Path) -> Result<Vec<(String, PathBuf)>, ExchangeError> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder).map_err(ExchangeError::io(folder))? {
         let path = entry.map_err(ExchangeError::io(folder))?.path();

@@ -10,8 +10,8 @@
 //! All files are untrusted: sizes are read and held to [`ImportOptions::max_bytes`] before anything is decoded.
 
 mod assemble;
-mod decode;
-mod folder;
+pub(crate) mod decode;
+pub(crate) mod folder;
 mod hci;
 mod names;
 mod quilt;
