@@ -35,7 +35,6 @@ impl Plan {
     }
 
     /// Writes the plan and everything to render it by to a folder, which is made if it is not there: `plan.json`,
-    /// `transforms.json`, `lfslab_camera.inc` with `povray.pov` and `povray.ini`, `render_mitsuba.py`, `render_blender.py`,
     /// `README.md`, and an empty folder for the pictures. Files of these names are replaced, pictures left as they are.
     ///
     /// # Errors
@@ -47,8 +46,7 @@ impl Plan {
             ("plan.json", self.to_json()),
             ("transforms.json", format!("{:#}\n", plan_transforms(self))),
             ("lfslab_camera.inc", povray::camera_include(self)),
-            ("povray.pov", include_str!("programs/povray.pov").to_owned()),
-            ("povray.ini", self.fill(include_str!("programs/povray.ini"))),
+            ("lfslab.ini", self.fill(include_str!("programs/lfslab.ini"))),
             ("render_mitsuba.py", include_str!("programs/render_mitsuba.py").to_owned()),
             ("render_blender.py", include_str!("programs/render_blender.py").to_owned()),
             ("README.md", self.fill(include_str!("programs/README.md"))),
@@ -101,11 +99,11 @@ mod tests {
         let geometry = LightFieldGeometry::around(cell, PlanePlacement::CellCenter, 3, 8).unwrap();
         let folder = tempfile::tempdir().unwrap();
         Plan::new(World::Blender, geometry).unwrap().write(folder.path()).unwrap();
-        for name in ["README.md", "povray.ini"] {
+        for name in ["README.md", "lfslab.ini"] {
             let text = fs::read_to_string(folder.path().join(name)).unwrap();
             assert!(!text.contains(['{', '}']), "{text}");
         }
-        let ini = fs::read_to_string(folder.path().join("povray.ini")).unwrap();
+        let ini = fs::read_to_string(folder.path().join("lfslab.ini")).unwrap();
         assert!(ini.contains("Final_Frame=54\n") && ini.contains("Width=8\n"), "{ini}");
     }
 
