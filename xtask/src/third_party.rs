@@ -8,19 +8,20 @@ use crate::steps::{CommandLine, workspace_root};
 
 /// A command that shows a tool to be there, and the Debian package that has it. What the commands print is part of the
 /// stamp: another Python does not find the packages of this one.
-const TOOLS: [(&str, &str); 4] = [
+const TOOLS: [(&str, &str); 5] = [
     ("python3 --version", "python3"),
     ("python3 -m ensurepip --version", "python3-venv"),
     ("node --version", "nodejs"),
     ("npm --version", "npm"),
+    ("povray --version", "povray povray-includes"),
 ];
 
 /// What to do where this program cannot do it itself.
 const HOW_TO_INSTALL: &str = "\
-the checks with other people's programs need Python 3.11 or newer with venv, Node 18 or newer and npm:
-  Debian, Ubuntu:  sudo apt-get update && sudo apt-get install --no-install-recommends python3-venv nodejs npm
-  Fedora:          sudo dnf install python3 nodejs npm
-  Arch:            sudo pacman -S python nodejs npm
+the checks with other people's programs need Python 3.11 or newer with venv, Node 18 or newer, npm and POV-Ray 3.7:
+  Debian, Ubuntu:  sudo apt-get update && sudo apt-get install --no-install-recommends python3-venv nodejs npm povray povray-includes
+  Fedora:          sudo dnf install python3 nodejs npm povray
+  Arch:            sudo pacman -S python nodejs npm povray
 then run `cargo xtask test` again";
 
 const PYTHON_REQUIREMENTS: &str = "requirements.txt";

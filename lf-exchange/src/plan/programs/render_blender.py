@@ -53,6 +53,8 @@ def prepare(scene, plan: dict):
     render.resolution_x, render.resolution_y, render.resolution_percentage = image["width"], image["height"], 100
     render.pixel_aspect_x = render.pixel_aspect_y = 1.0
     render.use_border = render.use_multiview = render.use_sequencer = False
+    if hasattr(render.image_settings, "media_type"):  # from Blender 5 on: a scene made for films takes no pictures otherwise
+        render.image_settings.media_type = "IMAGE"
     render.image_settings.file_format = "OPEN_EXR"
     render.image_settings.color_mode = "RGB"
     render.image_settings.color_depth = "32"
