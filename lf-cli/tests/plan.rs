@@ -129,7 +129,7 @@ impl Random {
 }
 
 /// Looks up 10⁴ rays through the cell that are stored as texels: each has the colour that its line has in the world of the plan.
-fn check_rays(file: &Path, world: fn(DVec3) -> DVec3, tolerance: f64) {
+fn check_rays(file: &Path, world: ToWorld, tolerance: f64) {
     let field = open(file);
     let (geometry, environment) = (field.geometry(), environment(&field));
     let center = world(geometry.cell().center());
@@ -154,8 +154,11 @@ fn check_rays(file: &Path, world: fn(DVec3) -> DVec3, tolerance: f64) {
     }
 }
 
-/// This project's coordinates in those of each world, written out by hand.
-const WORLDS: [(&str, fn(DVec3) -> DVec3); 3] =
+/// This project's coordinates in those of another world.
+type ToWorld = fn(DVec3) -> DVec3;
+
+/// That of each world, written out by hand.
+const WORLDS: [(&str, ToWorld); 3] =
     [("gltf", |p| p), ("povray", |p| DVec3::new(p.x, p.y, -p.z)), ("blender", |p| DVec3::new(p.x, -p.z, p.y))];
 
 #[test]
@@ -282,9 +285,9 @@ fn foreign_pictures_are_named() {
         ("lfslab02.png", 0, "cannot read the picture"),
     ] {
         if size > 0 {
-            picture(name, size)
+            picture(name, size);
         } else {
-            fs::write(pictures.join(name), [1; 100]).unwrap()
+            fs::write(pictures.join(name), [1; 100]).unwrap();
         }
         let error = refused(folder.path());
         assert!(error.contains(words) && error.contains(name), "{error}");

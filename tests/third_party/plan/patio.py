@@ -9,8 +9,8 @@ on where it was stopped. The scene (CC BY 3.0) is in Debian's package povray-exa
 import argparse
 import os
 import re
+import resource
 import subprocess
-import time
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +22,7 @@ CENTER, EDGE = np.array([370.0, 150.0, 60.0]), 60.0
 # As `lfslab render` has them: the radius of its sphere and its eye in edge lengths, its field of view in radians.
 RADIUS, EYE, FIELD_OF_VIEW = 0.48, np.array([1.4, 0.5, 0.6]), 0.67
 SIZE = 512
+PANORAMA = "+W1024", "+H512"
 SPHERE = """
 sphere {{ <{}, {}, {}>, {}
   pigment {{ rgb 0 }} finish {{ ambient 0 emission 0 diffuse 0 reflection {{ 1 }} }}
@@ -55,26 +56,25 @@ def write_scenes(original: Path, folder: Path) -> None:
     panorama = "camera {{ spherical angle 360 180 location <{},{},{}> }}\n".format(*CENTER)
     sphere = SPHERE.format(*CENTER, RADIUS * EDGE)
     scenes = {
+        "gather": panorama,
         "panorama": panorama,
         "frames": '#include "lfslab_camera.inc"\n',
         "mirror": sphere + camera,
-        "plain": camera,
     }
     for name, addition in scenes.items():
-        text = gathering if name == "panorama" else looking_up
+        text = gathering if name == "gather" else looking_up
         (folder / f"{name}.pov").write_text(text + "\n" + addition)
 
 
 def render(folder: Path, threads: int) -> None:
     common = ["-D", "-P", f"+WT{threads}", "Radiosity_File_Name=patio.rad", "-GA"]
     if not (folder / "patio.rad").exists():
-        run("povray", "+Ipanorama.pov", "+Opanorama.png", "+W1024", "+H512", "-A", "Radiosity_To_File=on", *common, cwd=folder)
+        run("povray", "+Igather.pov", "+Ogather.png", *PANORAMA, "-A", "Radiosity_To_File=on", *common, cwd=folder)
     common.append("Radiosity_From_File=on")
-    start = time.monotonic()
     run("povray", "lfslab.ini", "+Iframes.pov", "+C", "Antialias_Depth=2", *common, cwd=folder)
-    print(f"frames: {time.monotonic() - start:.0f} s")
-    for name in ("mirror", "plain"):
-        run("povray", f"+I{name}.pov", f"+O{name}.png", f"+W{SIZE}", f"+H{SIZE}", "+A0.1", "+R3", *common, cwd=folder)
+    print(f"pictures: {resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime:.0f} s of one core")
+    run("povray", "+Ipanorama.pov", "+Opanorama.png", *PANORAMA, "+A0.1", "+R3", *common, cwd=folder)
+    run("povray", "+Imirror.pov", "+Omirror.png", f"+W{SIZE}", f"+H{SIZE}", "+A0.1", "+R3", *common, cwd=folder)
 
 
 def png(path: Path) -> np.ndarray:
@@ -83,31 +83,65 @@ def png(path: Path) -> np.ndarray:
     return np.asarray(picture.read_image("uint8"))[..., :3]
 
 
+def view_slopes() -> np.ndarray:
+    """To the right of the columns, and downwards of the rows."""
+    return np.tan(FIELD_OF_VIEW / 2) * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
+
+
 def sphere_mask() -> np.ndarray:
     """Pixels whose ray meets the sphere, less a rim of two pixels, where both programs blend it with what is behind."""
-    slope = np.tan(FIELD_OF_VIEW / 2) * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
-    distance = np.linalg.norm(EYE)
-    silhouette = RADIUS / np.sqrt(distance**2 - RADIUS**2)
+    slope = view_slopes()
+    silhouette = RADIUS / np.sqrt(np.sum(EYE**2) - RADIUS**2)
     rim = 2 * (slope[1] - slope[0])
     return np.hypot(slope[:, None], slope[None, :]) < silhouette - rim
+
+
+def by_panorama(panorama: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """What a mirror shows of a picture of all directions from the cell's centre: no parallax. Nearest pixels of [row, column, channel]."""
+    eye = EYE * [1, 1, -1]
+    forward = -eye / np.linalg.norm(eye)
+    right = np.cross([0, 1, 0], forward)  # of a left-handed world
+    right /= np.linalg.norm(right)
+    up = np.cross(forward, right)
+    y, x = np.meshgrid(-view_slopes(), view_slopes(), indexing="ij")
+    ray = (forward + x[..., None] * right + y[..., None] * up)[mask]
+    ray /= np.linalg.norm(ray, axis=1, keepdims=True)
+    along = -ray @ eye
+    normal = (eye + (along - np.sqrt(along**2 - eye @ eye + RADIUS**2))[:, None] * ray) / RADIUS
+    mirrored = ray - 2 * np.sum(ray * normal, axis=1, keepdims=True) * normal
+    height, width = panorama.shape[:2]
+    column = (np.arctan2(mirrored[:, 0], mirrored[:, 2]) / (2 * np.pi) + 0.5) * width
+    row = (0.5 - np.arcsin(np.clip(mirrored[:, 1], -1, 1)) / np.pi) * height
+    return panorama[np.clip(row.astype(int), 0, height - 1), column.astype(int) % width]
 
 
 def psnr(a: np.ndarray, b: np.ndarray) -> float:
     return 10 * np.log10(255**2 / np.mean((a.astype(float) - b.astype(float)) ** 2))
 
 
+def write_small(pictures: list[np.ndarray], path: Path) -> None:
+    """Side by side, at five eighths of their size."""
+    row = np.ascontiguousarray(np.concatenate(pictures, axis=1))
+    height, width = row.shape[:2]
+    small = oiio.ImageBufAlgo.resize(oiio.ImageBuf(row), roi=oiio.ROI(0, width * 5 // 8, 0, height * 5 // 8, 0, 1, 0, 3))
+    small.write(str(path), "uint8")
+
+
 def compare(folder: Path) -> None:
-    """PSNR over the sphere's pixels, and the same for pictures that are wrong in ways that the conversion could be."""
+    """PSNR over the sphere's pixels; also of what is wrong in ways that a conversion of coordinates could be, and of a panorama."""
     theirs, ours, mask = png(folder / "mirror.png"), png(folder / "ours.png"), sphere_mask()
-    print(f"PSNR over {mask.sum()} pixels of the sphere: {psnr(theirs[mask], ours[mask]):.2f} dB")
-    print(f"of ours mirrored: {psnr(theirs[mask], ours[:, ::-1][mask]):.2f} dB, ", end="")
-    print(f"upside down: {psnr(theirs[mask], ours[::-1][mask]):.2f} dB")
-    composed = np.where(mask[..., None], ours, theirs)
-    pair = np.concatenate([theirs, composed], axis=1)
-    out = oiio.ImageOutput.create(str(folder / "patio.png"))
-    out.open(str(folder / "patio.png"), oiio.ImageSpec(pair.shape[1], pair.shape[0], 3, "uint8"))
-    out.write_image(np.ascontiguousarray(pair))
-    out.close()
+    flat = theirs.copy()
+    flat[mask] = by_panorama(png(folder / "panorama.png"), mask)
+    pictures = {
+        "slabs": ours,
+        "slabs, mirrored": ours[:, ::-1],
+        "slabs, upside down": ours[::-1],
+        "panorama from the cell's centre": flat,
+    }
+    print(f"PSNR over the {mask.sum()} pixels of the sphere")
+    for name, picture in pictures.items():
+        print(f"  {name:32} {psnr(theirs[mask], picture[mask]):5.2f} dB")
+    write_small([theirs, np.where(mask[..., None], ours, theirs), flat], folder / "patio.png")
 
 
 def main() -> None:
@@ -115,7 +149,7 @@ def main() -> None:
     parser.add_argument("scene", type=Path)
     parser.add_argument("out", type=Path)
     parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--focus", type=float, default=200.0, help="distance of the focal planes from the camera planes")
+    parser.add_argument("--focus", type=float, default=300.0, help="distance of the focal planes from the camera planes")
     options = parser.parse_args()
     folder = options.out
     cell = ",".join(str(x) for x in (*CENTER, EDGE))
