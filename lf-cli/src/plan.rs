@@ -1,5 +1,6 @@
 //! `lfslab plan`, and `lfslab import` of a plan's pictures.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
@@ -28,6 +29,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<()> {
     let wanted: Vec<Face> = args.faces.iter().filter_map(|&face| in_lfslab(face, args.world)).collect();
     let slabs = geometry.slabs().iter().filter(|slab| wanted.is_empty() || wanted.contains(&slab.face())).copied();
     let plan = Plan::new(args.world, LightFieldGeometry::new(cell, slabs.collect())?)?;
+    refuse_other_pictures(&plan, &args.out)?;
     plan.write(&args.out)?;
     let count = plan.camera_count();
     let [pictures, readme] = [Plan::PICTURES, "README.md"].map(|name| args.out.join(name).display().to_string());
@@ -39,6 +41,16 @@ pub(crate) fn run(args: &PlanArgs) -> Result<()> {
     );
     eprintln!("         {first} to {last} (or .exr) go to {pictures}; {readme} says how");
     print(&args.out.display().to_string())
+}
+
+/// Pictures of another plan would be taken for this one's, and left out by scripts that go on where they were stopped.
+fn refuse_other_pictures(plan: &Plan, folder: &Path) -> Result<()> {
+    let (old, pictures) = (folder.join(PLAN_FILE), folder.join(Plan::PICTURES));
+    let any = || fs::read_dir(&pictures).is_ok_and(|mut entries| entries.next().is_some());
+    if old.is_file() && any() && Plan::read(&old).ok().as_ref() != Some(plan) {
+        bail!("{} holds pictures of another plan; remove them or choose another folder", pictures.display());
+    }
+    Ok(())
 }
 
 /// The face of this project's world that a face of another world is.

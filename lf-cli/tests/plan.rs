@@ -266,6 +266,19 @@ fn linear_pictures_become_srgb_if_asked() {
 }
 
 #[test]
+fn pictures_of_another_plan_are_not_taken_over() {
+    let folder = TempDir::new().unwrap();
+    plan(folder.path(), &[]);
+    fs::write(folder.path().join("pictures/lfslab01.png"), "").unwrap();
+    plan(folder.path(), &[]);
+    let out = text(folder.path());
+    let other = lfslab(&["plan", "--cell", "0,0,0,1", "--out", &out]);
+    assert!(String::from_utf8_lossy(&other.stderr).contains("pictures of another plan"));
+    fs::remove_file(folder.path().join("pictures/lfslab01.png")).unwrap();
+    succeeds(&["plan", "--cell", "0,0,0,1", "--out", &out]);
+}
+
+#[test]
 fn foreign_pictures_are_named() {
     let folder = TempDir::new().unwrap();
     plan(folder.path(), &[]);

@@ -72,7 +72,7 @@ def render(folder: Path, threads: int) -> None:
         run("povray", "+Igather.pov", "+Ogather.png", *PANORAMA, "-A", "Radiosity_To_File=on", *common, cwd=folder)
     common.append("Radiosity_From_File=on")
     run("povray", "lfslab.ini", "+Iframes.pov", "+C", "Antialias_Depth=2", *common, cwd=folder)
-    print(f"pictures: {resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime:.0f} s of one core")
+    print(f"pictures of this run: {resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime:.0f} s of one core")
     run("povray", "+Ipanorama.pov", "+Opanorama.png", *PANORAMA, "+A0.1", "+R3", *common, cwd=folder)
     run("povray", "+Imirror.pov", "+Omirror.png", f"+W{SIZE}", f"+H{SIZE}", "+A0.1", "+R3", *common, cwd=folder)
 
