@@ -14,8 +14,8 @@ use lf_math::PlanePlacement;
 
 use crate::capture_args::{CaptureArgs, CubemapArgs, MergeArgs};
 use crate::exchange_args::{ExportArgs, ImportArgs};
-use crate::scene_args::{SceneArgs, ViewArgs};
 use crate::plan_args::PlanArgs;
+use crate::scene_args::{SceneArgs, ViewArgs};
 
 /// Reflections with parallax from light field slabs: capture, compress, inspect and render them.
 #[derive(Debug, Parser)]

@@ -7,9 +7,8 @@ use anyhow::{Context, Result, bail};
 use glam::{DVec3, Vec2};
 use lf_compress::PackedLightField;
 use lf_exchange::{ImportedPlan, Plan, PlanImportOptions, PlanTexels, World, import_plan};
-use lf_math::{Cell, Face, LightFieldGeometry, PlanePlacement};
+use lf_math::{Cell, Face, LightFieldGeometry};
 
-use crate::args::Planes;
 use crate::exchange::metadata;
 use crate::exchange_args::ImportArgs;
 use crate::output::{megabytes, print};
@@ -21,11 +20,7 @@ const PLAN_FILE: &str = "plan.json";
 pub(crate) fn run(args: &PlanArgs) -> Result<()> {
     let lfslab_from_world = args.world.world_from_lfslab().transpose();
     let cell = Cell::cube(lfslab_from_world * args.cell.center, args.cell.size).context("--cell")?;
-    let placement = match args.planes {
-        Planes::Faces => PlanePlacement::CellFaces,
-        Planes::Center => PlanePlacement::CellCenter,
-    };
-    let geometry = LightFieldGeometry::around(cell, placement, args.cameras, args.resolution)?;
+    let geometry = LightFieldGeometry::around(cell, args.planes.0, args.cameras, args.resolution)?;
     let wanted: Vec<Face> = args.faces.iter().filter_map(|&face| in_lfslab(face, args.world)).collect();
     let slabs = geometry.slabs().iter().filter(|slab| wanted.is_empty() || wanted.contains(&slab.face())).copied();
     let plan = Plan::new(args.world, LightFieldGeometry::new(cell, slabs.collect())?)?;

@@ -7,7 +7,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lf_exchange::World;
 use lf_math::Face;
 
-use crate::args::{CellArg, Planes};
+use crate::args::CellArg;
+use crate::capture_args::PlanesArg;
 use crate::exchange_args::face;
 
 #[derive(Debug, Args)]
@@ -25,10 +26,10 @@ pub(crate) struct PlanArgs {
     /// Width and height of each picture in pixels
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub(crate) resolution: u32,
-    /// Where the camera planes stand. Cameras stand up to one edge length from the cell's centre with `center`, up to one and a
-    /// half with `faces`; none should stand in an object
-    #[arg(long, value_enum, default_value_t = Planes::Center)]
-    pub(crate) planes: Planes,
+    /// Where the camera planes stand: `center`, `faces`, or a distance in metres from the cell's centre towards each face. Cameras
+    /// stand up to one edge length from the centre with `center`, up to one and a half with `faces`; none should stand in an object
+    #[arg(long, value_name = "PLACE", default_value = "center", allow_hyphen_values = true)]
+    pub(crate) planes: PlanesArg,
     /// Only the slabs of some faces, such as +x,-z [default: all six]
     #[arg(long, value_name = "FACES", value_delimiter = ',', value_parser = face, allow_hyphen_values = true)]
     pub(crate) faces: Vec<Face>,

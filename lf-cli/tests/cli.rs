@@ -36,7 +36,9 @@ fn small_file(folder: &Path) -> String {
 
 #[test]
 fn every_command_has_help() {
-    for command in ["demo", "view", "capture", "merge", "cubemap", "render", "info", "validate", "crop", "export", "import"] {
+    for command in
+        ["demo", "view", "capture", "merge", "cubemap", "render", "info", "validate", "crop", "export", "import"]
+    {
         let output = lfslab(&[command, "--help"]);
         assert!(output.status.success());
         assert!(text(&output.stdout).contains("Usage: lfslab"), "{command}");
