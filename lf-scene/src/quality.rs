@@ -41,6 +41,7 @@ pub struct Estimate {
     /// Mean radiance of all samples, linear RGB, W/(m²·sr).
     pub radiance: Vec3,
     /// Standard error of that mean, for each channel; infinite with one sample, which tells nothing about its error.
+    /// With few samples it is uncertain itself, and mostly too small where rare samples are bright: a lamp close to a wall.
     pub standard_error: Vec3,
     /// Ray parameter of the hit; infinite if the ray left the scene.
     pub distance: f32,

@@ -90,17 +90,25 @@ fn per_pixel<T: Copy + Default + Send>(camera: &Pinhole, value: impl Fn(&Ray) ->
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
+
     use super::*;
-    use crate::{Illumination, Quality, museum, reflectors};
+    use crate::{Environment, Illumination, Lighting, Material, Quality, SceneBuilder, museum, reflectors};
 
     /// The error is told where the mirror is, and falls with the root of the samples.
     #[test]
     fn pictures_know_their_noise() {
         let mirror = Mirror::new(reflectors::sphere(3).fitted(Vec3::ZERO, 0.4).unwrap());
         let camera = Pinhole::look_at(Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, 0.5, 16, 16).unwrap();
+        // Under a sky, no sample is much brighter than others.
+        let mut builder = SceneBuilder::default();
+        let grey = builder.material(Material::diffuse(Vec3::splat(0.5)));
+        builder.parallelogram(Vec3::new(-9.0, 0.0, -9.0), Vec3::Z * 18.0, Vec3::X * 18.0, Vec2::ONE, grey);
+        builder.cuboid(Vec3::new(-2.0, 0.0, 2.0), Vec3::new(2.0, 2.0, 3.0), grey);
+        let scene = builder.build("yard", Lighting::from_environment(Environment::Sky(Vec3::ONE))).unwrap();
         let noise = |samples: u32| {
             let quality = Quality { illumination: Illumination::Global { max_bounces: 3 }, samples, seed: 0 };
-            let tracer = Tracer::new(museum::scene()).with_quality(quality);
+            let tracer = Tracer::new(scene.clone()).with_quality(quality);
             let picture = render(&tracer, &museum::cell(), &mirror, &camera);
             let pairs = picture.mask.texels().iter().zip(picture.standard_error.texels());
             assert!(pairs.clone().all(|(&seen, error)| seen || *error == Vec3::ZERO));
