@@ -78,7 +78,7 @@ fn parallel_plates() {
 }
 
 /// An integrating sphere: what one patch of it emits arrives evenly everywhere, E·f·a/(1 − a), f being the patch's share of
-/// the area. Its facets are 1/80 of the radius wide, which is as exact as it gets.
+/// the area. The sphere is a mesh of 20 480 triangles with the sphere's normals.
 #[test]
 fn integrating_sphere() {
     let mesh = reflectors::sphere(5);
@@ -88,10 +88,10 @@ fn integrating_sphere() {
     let (mut lit, mut all) = (0.0, 0.0);
     for &triangle in mesh.triangles() {
         let [a, b, c] = triangle.map(|i| mesh.positions()[i as usize]);
-        let normal = (c - a).cross(b - a);
+        let double_area = f64::from((c - a).cross(b - a).length());
         let shines = a.y > 0.8;
-        all += f64::from(normal.length());
-        lit += if shines { f64::from(normal.length()) } else { 0.0 };
+        all += double_area;
+        lit += if shines { double_area } else { 0.0 };
         let corner = |position: Vec3| lf_scene::Vertex { position, normal: -position, uv: Vec2::ZERO };
         builder.triangle([corner(a), corner(c), corner(b)], if shines { lamp } else { white });
     }
