@@ -9,7 +9,7 @@
 //! rounds nothing, with coordinates up to 2²⁰; and every box is enlarged by 1, which is more than its distances
 //! can be wrong for a ray that starts within the scene's reach.
 
-use glam::{DVec3, Mat3A, Vec3, Vec3A};
+use glam::{Vec3, Vec3A, Vec3Swizzles};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh;
@@ -19,7 +19,7 @@ use obvhs::{Boundable, BvhBuildParams};
 /// The exponent of the largest coordinate after scaling.
 const REACH_EXPONENT: i32 = 19;
 
-/// A triangle's corners, scaled.
+/// A triangle's corners, scaled: x of all three, y, z.
 #[derive(Clone, Copy)]
 struct Corners([Vec3A; 3]);
 
@@ -54,7 +54,7 @@ struct ScaledRay {
 impl TriangleBvh {
     pub(crate) fn new(corners: impl Iterator<Item = [Vec3; 3]> + Clone) -> Self {
         let scale = scale_for(corners.clone().flatten());
-        let all: Vec<_> = corners.map(|points| Corners(points.map(|p| Vec3A::from(p) * scale))).collect();
+        let all: Vec<_> = corners.map(|points| Corners::new(points, scale)).collect();
         let bvh = build_cwbvh(&all, BvhBuildParams::medium_build(), &mut std::time::Duration::default());
         let triangles = bvh.primitive_indices.iter().map(|&i| all[i as usize]).collect();
         Self { bvh, triangles, scale }
@@ -109,6 +109,7 @@ impl TriangleBvh {
         self.bvh.primitive_indices[slot] as usize
     }
 
+    #[inline]
     fn scaled(&self, origin: Vec3, direction: Vec3, farthest: f32) -> Option<ScaledRay> {
         let largest = direction.abs().max_element();
         if !(origin.is_finite() && direction.is_finite() && largest > 0.0) {
@@ -123,10 +124,18 @@ impl TriangleBvh {
     }
 }
 
+impl Corners {
+    fn new([a, b, c]: [Vec3; 3], scale: f32) -> Self {
+        Self([0, 1, 2].map(|axis| Vec3A::new(a[axis], b[axis], c[axis]) * scale))
+    }
+}
+
 impl Boundable for Corners {
     fn aabb(&self) -> Aabb {
-        let [a, b, c] = self.0;
-        Aabb::new(a.min(b).min(c) - 1.0, a.max(b).max(c) + 1.0)
+        let [x, y, z] = self.0;
+        let min = Vec3A::new(x.min_element(), y.min_element(), z.min_element());
+        let max = Vec3A::new(x.max_element(), y.max_element(), z.max_element());
+        Aabb::new(min - 1.0, max + 1.0)
     }
 }
 
@@ -146,47 +155,51 @@ fn power_of_two(exponent: i32) -> f32 {
     f32::from_bits(((exponent.clamp(-126, 127) + 127) as u32) << 23)
 }
 
-/// A ray with the shear that turns its direction into the z axis (Woop et al., §3).
+/// A ray with the shear that turns its direction into an axis (Woop et al., §3).
 struct ShearedRay {
     origin: Vec3A,
-    /// Each row has a one, a shear, and zeros: the sums are rounded as if only the two were added.
-    shear: Mat3A,
-    z_scale: f32,
+    /// Number of that axis.
+    axis: usize,
+    /// Shear of the two next axes, in turn, and the scale of this one.
+    shear: Vec3A,
 }
 
 impl ShearedRay {
     /// Expects a direction that is finite and not zero.
+    #[inline]
     fn new(origin: Vec3A, direction: Vec3A) -> Self {
         let size = direction.abs();
-        let z = if size.z >= size.x.max(size.y) { 2 } else { usize::from(size.y >= size.x) };
-        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-        let mut columns = [Vec3A::ZERO; 3];
-        columns[x] = Vec3A::X;
-        columns[y] = Vec3A::Y;
-        let d = direction[z];
-        columns[z] = Vec3A::new(-direction[x] / d, -direction[y] / d, 1.0);
-        Self { origin, shear: Mat3A::from_cols(columns[0], columns[1], columns[2]), z_scale: 1.0 / d }
+        let axis = if size.z >= size.x.max(size.y) { 2 } else { usize::from(size.y >= size.x) };
+        let d = direction[axis];
+        let shear = Vec3A::new(direction[(axis + 1) % 3] / d, direction[(axis + 2) % 3] / d, 1.0 / d);
+        Self { origin, axis, shear }
     }
 
     /// Ray parameter in 0 … `farthest` and the corners' shares. A ray through an edge or a corner
     /// meets each triangle there: a point on an edge has the same sign, or zero, for both neighbours.
     #[inline]
     fn hit(&self, corners: &Corners, farthest: f32) -> Option<(f32, Vec3)> {
-        let [a, b, c] = corners.0.map(|p| self.shear * (p - self.origin));
-        let edge = |p: Vec3A, q: Vec3A| p.x * q.y - p.y * q.x;
-        let mut e = Vec3::new(edge(c, b), edge(a, c), edge(b, a));
-        if e.x == 0.0 || e.y == 0.0 || e.z == 0.0 {
+        let [x, y, z] = corners.0;
+        let (x, y, z) = (x - self.origin.x, y - self.origin.y, z - self.origin.z);
+        let (x, y, z) = match self.axis {
+            0 => (y, z, x),
+            1 => (z, x, y),
+            _ => (x, y, z),
+        };
+        let (x, y) = (x - z * self.shear.x, y - z * self.shear.y);
+        let mut e = x.zxy() * y.yzx() - y.zxy() * x.yzx();
+        if e.cmpeq(Vec3A::ZERO).any() {
             // A product may have been rounded to a tie; doubles hold products of floats exactly.
-            let exact = |p: Vec3A, q: Vec3A| f64::from(p.x) * f64::from(q.y) - f64::from(p.y) * f64::from(q.x);
-            e = DVec3::new(exact(c, b), exact(a, c), exact(b, a)).as_vec3();
+            let (x, y) = (x.as_dvec3(), y.as_dvec3());
+            e = (x.zxy() * y.yzx() - y.zxy() * x.yzx()).as_vec3a();
         }
-        let determinant = e.x + e.y + e.z;
-        if (e.min_element() < 0.0 && e.max_element() > 0.0) || determinant == 0.0 {
+        let determinant = e.element_sum();
+        if (e.cmplt(Vec3A::ZERO).any() && e.cmpgt(Vec3A::ZERO).any()) || determinant == 0.0 {
             return None;
         }
         let shares = e / determinant;
-        let t = self.z_scale * shares.dot(Vec3::new(a.z, b.z, c.z));
-        (t >= 0.0 && t <= farthest).then_some((t, shares))
+        let t = self.shear.z * shares.dot(z);
+        (t >= 0.0 && t <= farthest).then_some((t, shares.into()))
     }
 }
 
