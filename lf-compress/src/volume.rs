@@ -7,6 +7,8 @@
 //! equally many slices: six slabs of 32×32 cameras × 128×128 texels take 8 slots of 1024×1024×16 in 1024×1024×128, 64 MiB in
 //! BC1. Cropped slabs would lose to rounding what they gain, and slabs follow each other without gaps.
 
+use std::cmp::Reverse;
+
 use lf_format::{CameraPlace, SlabTiling, TexelEncoding};
 use lf_math::{Coverage, Windows};
 use thiserror::Error;
@@ -72,7 +74,8 @@ fn whole_per_tile(cameras: u32, texels: u32) -> u32 {
     cameras.min(largest)
 }
 
-/// The number with which tiles as wide as the widest cover least; of equal ones the smallest.
+/// The number with which tiles as wide as the widest cover least; of equal ones the largest: cameras of one tile are packed
+/// against each other.
 fn cropped_per_tile(windows: &Windows) -> u32 {
     let widths: Vec<u32> = windows.iter().map(|window| (window.end - window.start).next_multiple_of(4)).collect();
     let cost = |per_tile: usize| {
@@ -82,7 +85,7 @@ fn cropped_per_tile(windows: &Windows) -> u32 {
     };
     // More cameras than this are wider than the edge, but for empty windows.
     let most = widths.len().min(CROPPED_EDGE as usize / 4);
-    (1..=most).min_by_key(|&per_tile| cost(per_tile)).unwrap_or(1) as u32
+    (1..=most).min_by_key(|&per_tile| (cost(per_tile), Reverse(per_tile))).unwrap_or(1) as u32
 }
 
 impl VolumeLayout {

@@ -55,6 +55,14 @@ fn samples(geometry: &LightFieldGeometry) -> impl Iterator<Item = Sample> {
     })
 }
 
+/// Many cameras whose windows are whole in the middle: any number of them that fits wastes as little as one, and packs worse.
+#[test]
+fn cameras_share_tiles_where_it_costs_nothing() {
+    let field = LightFieldGeometry::around(cell(), PlanePlacement::CellFaces, 64, 256).unwrap();
+    let coverage = Coverage::of_cell(&field.slabs()[0], &cell()).aligned(4);
+    assert_eq!(cameras_per_tile(&coverage), [8, 8]);
+}
+
 #[test]
 fn the_papers_volume() {
     let layout = whole(&uniform(32, 128));
