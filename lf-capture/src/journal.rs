@@ -170,7 +170,7 @@ impl Journal {
         self.shard
     }
 
-    /// The tiles that it is for and does not hold yet, in the order of the file.
+    /// The tiles that it is for and does not hold yet, in the order of [`Plan::tiles`].
     #[must_use]
     pub fn missing(&self) -> Vec<TileId> {
         self.tiles().filter(|id| !self.records.contains_key(id)).collect()

@@ -1,5 +1,6 @@
 //! What is captured, and into which tiles it is cut.
 
+use std::cmp::Reverse;
 use std::io::Cursor;
 
 use lf_compress::PackOptions;
@@ -119,11 +120,15 @@ impl Plan {
         self.depth_tilings.as_deref()
     }
 
-    /// All tiles in the order of the file.
+    /// All tiles, the largest first. In this order they are worked on, so that the last ones are short, and dealt out to shards, so that
+    /// all have about as much to do.
     #[must_use]
     pub fn tiles(&self) -> Vec<TileId> {
         let slabs = self.tilings.iter().enumerate();
-        slabs.flat_map(|(slab, tiling)| tiling.stored_tiles().map(move |tile| TileId { slab, tile })).collect()
+        let stored = slabs.flat_map(|(slab, tiling)| tiling.stored_tiles().map(move |tile| TileId { slab, tile }));
+        let mut tiles: Vec<TileId> = stored.collect();
+        tiles.sort_by_key(|id| (Reverse(self.tilings[id.slab].raw_len(id.tile)), *id));
+        tiles
     }
 
     /// Texels of all images, stored or not.

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// Every `count`-th tile of a file, beginning with the `number`-th: 1 ≤ number ≤ count.
+/// Every `count`-th tile of a file, in the order of [`Plan::tiles`](crate::Plan::tiles), beginning with the `number`-th: 1 ≤ number ≤
+/// count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     number: u32,
@@ -32,7 +33,7 @@ impl Shard {
         self.count
     }
 
-    /// Whether the tile at a position of the file's order belongs to it.
+    /// Whether the tile at a position of that order belongs to it.
     #[must_use]
     pub fn holds(&self, position: usize) -> bool {
         position % self.count as usize == self.number as usize - 1

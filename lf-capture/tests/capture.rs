@@ -182,6 +182,19 @@ fn a_journal_that_ends_anywhere_goes_on_to_the_same_bytes() {
     }
 }
 
+/// Tiles at the rim of a slab are small; each shard gets its share of large ones.
+#[test]
+fn shards_have_about_as_much_to_do() {
+    let tracer = Tracer::new(glowing_box(0.5));
+    let field = geometry(PlanePlacement::CellFaces, [32, 32], [128, 128]);
+    let plan = Plan::survey(&tracer, &field, options(TexelEncoding::Bc1), Metadata::new()).unwrap();
+    let size = |id: &lf_capture::TileId| plan.tilings()[id.slab].raw_len(id.tile);
+    let tiles = plan.tiles();
+    let work = [0, 1, 2, 3].map(|shard| tiles.iter().skip(shard).step_by(4).map(size).sum::<u64>());
+    let [least, most] = [work.iter().min().unwrap(), work.iter().max().unwrap()];
+    assert!(10 * most <= 11 * least, "{work:?}");
+}
+
 /// Headers whose checksum is right and whose numbers are not.
 #[test]
 fn headers_are_not_believed() {
