@@ -1,16 +1,14 @@
 //! `lfslab cubemap`: what is seen from points of a scene, as pictures with distance.
 
-use std::io::Cursor;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow};
-use exr::prelude::{SpecificChannels, WritableImage};
+use anyhow::{Context, Result};
 use glam::DVec3;
 use lf_math::{Face, Image};
 use lf_scene::{Traced, trace_cube};
 
 use crate::capture_args::CubemapArgs;
-use crate::output::{print, write};
+use crate::output::{print, write_exr_channels};
 use crate::sources::Source;
 
 pub(crate) fn run(args: &CubemapArgs) -> Result<()> {
@@ -34,23 +32,8 @@ fn file_name(face: Face) -> String {
     face.name().to_lowercase().replace('+', "pos").replace('-', "neg")
 }
 
-/// One OpenEXR picture: R, G, B and Z.
+/// One OpenEXR picture: radiance, and distance as Z.
 fn write_face(path: &Path, picture: &Image<Traced>) -> Result<()> {
-    let (width, height) = (picture.width() as usize, picture.height() as usize);
-    let texel = |at: exr::math::Vec2<usize>| {
-        let Traced { radiance, distance } = picture.texels()[at.y() * width + at.x()];
-        (radiance.x, radiance.y, radiance.z, distance)
-    };
-    let channels = SpecificChannels::build()
-        .with_channel("R")
-        .with_channel("G")
-        .with_channel("B")
-        .with_channel("Z")
-        .with_pixel_fn(texel);
-    let mut bytes = Cursor::new(Vec::new());
-    exr::image::Image::from_channels((width, height), channels)
-        .write()
-        .to_buffered(&mut bytes)
-        .map_err(|e| anyhow!("cannot encode {}: {e}", path.display()))?;
-    write(path, bytes.get_ref())
+    let texels = picture.map(|Traced { radiance, distance }| [radiance.x, radiance.y, radiance.z, distance]);
+    write_exr_channels(path, ["R", "G", "B", "Z"], &texels)
 }

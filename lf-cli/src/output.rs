@@ -49,10 +49,19 @@ pub(crate) fn png(picture: &Image<[u8; 4]>) -> Result<Vec<u8>> {
 
 /// Writes a linear picture as OpenEXR, 32-bit float RGB.
 pub(crate) fn write_exr(path: &Path, picture: &Image<Vec3>) -> Result<()> {
-    use exr::prelude::{SpecificChannels, WritableImage};
+    write_exr_channels(path, ["R", "G", "B"], &picture.map(|color| color.to_array()))
+}
+
+/// Writes a picture of named channels as OpenEXR, 32-bit floats.
+pub(crate) fn write_exr_channels<const N: usize>(
+    path: &Path,
+    names: [&str; N],
+    picture: &Image<[f32; N]>,
+) -> Result<()> {
+    use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, WritableImage};
     let (width, height) = (picture.width() as usize, picture.height() as usize);
-    let channels =
-        SpecificChannels::rgb(|at: exr::math::Vec2<usize>| picture.texels()[at.y() * width + at.x()].to_array().into());
+    let samples = |i: usize| FlatSamples::F32(picture.texels().iter().map(|texel| texel[i]).collect());
+    let channels = AnyChannels::sort((0..N).map(|i| AnyChannel::new(names[i], samples(i))).collect());
     let mut bytes = Cursor::new(Vec::new());
     exr::image::Image::from_channels((width, height), channels)
         .write()

@@ -81,7 +81,7 @@ pub(crate) struct ViewArgs {
     pub(crate) scene: String,
     #[command(flatten)]
     pub(crate) light: LightArgs,
-    /// A picture to write (.png, or .exr for the radiance itself)
+    /// A picture to write: .png, or .exr for the radiance itself, its standard error (`error`) and distance (`Z`)
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Which of the scene's cameras takes the picture: its number from 0, or its name

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 use glam::Vec3;
-use lf_math::Pinhole;
-use lf_scene::{Environment, Light, Material, Scattering, Scene, SceneCamera, Surface, Tracer, view};
+use lf_math::{Image, Pinhole};
+use lf_scene::{Environment, Estimate, Light, Material, Scattering, Scene, SceneCamera, Surface, Tracer, view};
 
-use crate::output::{check_writable, megabytes, png, print, progress_bar, write, write_exr};
+use crate::output::{check_writable, megabytes, png, print, progress_bar, write, write_exr_channels};
 use crate::pictures::display;
 use crate::scene_args::ViewArgs;
 use crate::sources::{Loaded, find_camera};
@@ -30,7 +30,28 @@ pub(crate) fn run(args: &ViewArgs) -> Result<()> {
     let bar = progress_bar(args.size.height.into(), "view", "rows");
     let picture = view(&tracer, &camera, &|done| bar.set_position(done));
     bar.finish_and_clear();
-    if is_exr { write_exr(out, &picture) } else { write(out, &png(&display(&picture))?) }
+    eprintln!("{}", noise(&picture));
+    if is_exr {
+        let channels = ["R", "G", "B", "error.R", "error.G", "error.B", "Z"];
+        return write_exr_channels(out, channels, &picture.map(values));
+    }
+    write(out, &png(&display(&picture.map(|estimate| estimate.radiance)))?)
+}
+
+/// Radiance, its standard error and distance.
+fn values(Estimate { radiance: l, standard_error: e, distance, .. }: Estimate) -> [f32; 7] {
+    [l.x, l.y, l.z, e.x, e.y, e.z, distance]
+}
+
+/// How well the picture is known.
+fn noise(picture: &Image<Estimate>) -> String {
+    let sum = |of: fn(&Estimate) -> Vec3| picture.texels().iter().map(|e| of(e).as_dvec3().element_sum()).sum::<f64>();
+    let share = sum(|estimate| estimate.standard_error) / sum(|estimate| estimate.radiance);
+    if share.is_finite() {
+        format!("noise    standard error {:.2} % of the radiance, mean of all pixels", 100.0 * share)
+    } else {
+        "noise    not known from one sample a pixel".to_owned()
+    }
 }
 
 /// Whether a picture is OpenEXR, else PNG, by its name.
