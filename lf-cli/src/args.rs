@@ -60,6 +60,9 @@ pub(crate) struct DemoArgs {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
+    /// How many cameras and texels
+    #[arg(long, value_enum, default_value_t = Preset::Small)]
+    pub(crate) preset: Preset,
     /// An OBJ mesh to reflect in, instead of the teapot; the sphere is always drawn
     #[arg(long, value_name = "FILE")]
     pub(crate) reflector: Option<PathBuf>,

@@ -94,7 +94,7 @@ pub(crate) fn capture_to(source: &Source, sampling: &Sampling, options: Options,
 }
 
 fn sampling(args: &CaptureArgs) -> Sampling {
-    let preset = args.scene.preset.sampling();
+    let preset = args.preset.sampling();
     Sampling {
         cameras: args.cameras.unwrap_or(preset.cameras),
         resolution: args.resolution.unwrap_or(preset.resolution),

@@ -7,7 +7,7 @@ use clap::Args;
 use lf_capture::Shard;
 use lf_math::PlanePlacement;
 
-use crate::args::{EncodingArgs, numbers};
+use crate::args::{EncodingArgs, Preset, numbers};
 use crate::scene_args::SceneArgs;
 
 #[derive(Debug, Args)]
@@ -17,6 +17,9 @@ pub(crate) struct CaptureArgs {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
+    /// How many cameras and texels
+    #[arg(long, value_enum, default_value_t = Preset::Small)]
+    pub(crate) preset: Preset,
     /// Cameras along s and t, instead of the preset's: N for N×N, or SxT
     #[arg(long, value_name = "N|SxT", value_parser = counts::<256>)]
     pub(crate) cameras: Option<[u32; 2]>,
@@ -46,7 +49,7 @@ pub(crate) struct CaptureArgs {
     /// Throw away what a stopped capture left, and begin anew
     #[arg(long)]
     pub(crate) restart: bool,
-    /// Capture every N-th tile only, beginning with the K-th, and leave them in a journal beside FILE for `lfslab merge`
+    /// Capture only the K-th of N parts of the file, and leave it in a journal beside FILE for `lfslab merge`
     #[arg(long, value_name = "K/N")]
     pub(crate) shard: Option<Shard>,
     /// How many threads work [default: one for each core]

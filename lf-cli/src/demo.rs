@@ -77,7 +77,7 @@ const PARALLAX_CAPTION: &str = "The middle of the sphere from six eyes 7° apart
 
 /// Captures the slabs into the file.
 fn capture(args: &DemoArgs, source: &Source, file: &Path) -> Result<Captured> {
-    let sampling = args.scene.preset.sampling();
+    let sampling = args.preset.sampling();
     let (encoding, pack) = (lf_format::TexelEncoding::Bc1, PackOptions::default());
     let options = Options { grid: sampling.grid, encoding, pack, whole: false, depth: false };
     capture_to(source, &sampling, options, file)
@@ -218,7 +218,7 @@ fn method_result(
     gpu: Option<&GpuSide>,
 ) -> MethodResult {
     let side = gpu.filter(|_| frames.on_gpu);
-    let sampling = args.scene.preset.sampling();
+    let sampling = args.preset.sampling();
     let cube_bytes = 4 * 6 * u64::from(CUBE_SIZE).pow(2);
     let seconds = |time: Duration| time.as_secs_f64();
     let (method, parameters, bytes_on_device, bytes_on_disk, preparation_s) = match frames.asked {
@@ -284,7 +284,7 @@ fn facts(args: &DemoArgs, prepared: &Prepared) -> Vec<(String, String)> {
     [
         ("Triangles", prepared.source.tracer.scene().triangles().len().to_string()),
         ("Cell", format!("{:.3} m around ({:.3}, {:.3}, {:.3})", edges.x, center.x, center.y, center.z)),
-        ("Preset", format!("{}, camera planes {}", args.scene.preset.name(), placement(&args.scene.preset.sampling()))),
+        ("Preset", format!("{}, camera planes {}", args.preset.name(), placement(&args.preset.sampling()))),
         ("Focal depths +X −X +Y −Y +Z −Z", format!("{} m", depths.join(", "))),
         (
             "Capture",
@@ -292,7 +292,7 @@ fn facts(args: &DemoArgs, prepared: &Prepared) -> Vec<(String, String)> {
                 "{:.1} million rays, traced and encoded in {:.1} s, {2}×{2} a texel",
                 captured.rays as f64 / 1e6,
                 captured.time.as_secs_f64(),
-                args.scene.preset.sampling().grid
+                args.preset.sampling().grid
             ),
         ),
         ("Stored texels", format!("{:.2} dB", captured.psnr)),

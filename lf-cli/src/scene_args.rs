@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use lf_scene::{Illumination, Quality};
 
-use crate::args::{CellArg, EyeArg, Preset};
+use crate::args::{CellArg, EyeArg};
 
 /// Where the light comes from, and where it is caught.
 #[derive(Debug, Args)]
@@ -23,9 +23,6 @@ pub(crate) struct SceneArgs {
     /// camera]
     #[arg(long, value_name = "X,Y,Z,SIZE", allow_hyphen_values = true)]
     pub(crate) cell: Option<CellArg>,
-    /// How many cameras and texels
-    #[arg(long, value_enum, default_value_t = Preset::Small)]
-    pub(crate) preset: Preset,
 }
 
 /// Which light is traced, and light from outside the scene.
