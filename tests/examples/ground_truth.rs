@@ -12,9 +12,10 @@ use std::{fs, thread};
 
 use clap::Parser;
 use glam::{DVec3, Vec3};
-use lf_math::Cell;
+use lf_math::{Cell, GeometryError};
 use lf_scene::{
-    EMBEDDED, Illumination, ImportOptions, Quality, Scene, Tracer, find_free_space, import_environment, import_gltf,
+    EMBEDDED, Illumination, ImportOptions, Material, Quality, Scene, SceneBuilder, Tracer, find_free_space,
+    import_environment, import_gltf,
 };
 use lf_tests::mitsuba::{write_floats, write_scene};
 use lf_tests::rays_in_cell;
@@ -91,7 +92,19 @@ fn load(arguments: &Arguments) -> Result<(Scene, Option<Cell>), Box<dyn Error>> 
     for warning in &imported.warnings {
         eprintln!("warning: {warning}");
     }
-    Ok((imported.scene, None))
+    Ok((without_holes(&imported.scene)?, None))
+}
+
+/// The scene with all its surfaces whole: Mitsuba's path tracer counts a hole as a bounce, and its shadow rays end there.
+fn without_holes(scene: &Scene) -> Result<Scene, GeometryError> {
+    let mut builder = SceneBuilder::default();
+    for material in scene.materials() {
+        builder.material(Material { alpha_cutoff: None, ..material.clone() });
+    }
+    for (corners, material) in scene.triangles() {
+        builder.triangle(*corners, *material);
+    }
+    builder.build(scene.name(), scene.lighting().clone())
 }
 
 /// A cell in the room that the scene's middle has.

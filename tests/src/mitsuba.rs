@@ -102,8 +102,6 @@ impl Textures<'_> {
             "scattering": scattering,
             "base": self.surface(&material.base)?,
             "emission": if glows { self.surface(&material.emission)? } else { Value::Null },
-            "double_sided": material.double_sided,
-            "alpha_cutoff": material.alpha_cutoff,
         }))
     }
 

@@ -149,29 +149,8 @@ class Pattern(mi.Texture):
         return f"Pattern[{self.kind}]"
 
 
-class Cutout(mi.Texture):
-    """1 where another texture reaches a bound, 0 elsewhere."""
-
-    def __init__(self, props):
-        mi.Texture.__init__(self, props)
-        self.alpha, self.cutoff = props["alpha"], props["cutoff"]
-
-    def eval_1(self, si, active=True):
-        return dr.select(self.alpha.eval_1(si, active) >= self.cutoff, mi.Float(1), mi.Float(0))
-
-    def mean(self):
-        return mi.Float(0.5)
-
-    def is_spatially_varying(self):
-        return True
-
-    def to_string(self):
-        return "Cutout[]"
-
-
 def register():
     """Makes the plugins known to the current variant."""
     mi.register_bsdf("gltf", Gltf)
     mi.register_bsdf("smoothmetal", SmoothMetal)
     mi.register_texture("pattern", Pattern)
-    mi.register_texture("cutout", Cutout)

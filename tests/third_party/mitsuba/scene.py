@@ -71,10 +71,7 @@ def bsdf(folder: Path, material: dict) -> dict:
         "mirror": lambda: {"type": "conductor", "material": "none", "specular_reflectance": base},
         "metallic-roughness": lambda: metallic_roughness(folder, material["scattering"], base),
     }[kind]()
-    both = {"type": "twosided", "inner": inner}
-    if material["alpha_cutoff"] is None or material["base"]["kind"] != "texture":
-        return both
-    return {"type": "mask", "opacity": cutout(folder, material["base"], material["alpha_cutoff"]), "inner": both}
+    return {"type": "twosided", "inner": inner}
 
 
 def metallic_roughness(folder: Path, model: dict, base: dict) -> dict:
@@ -93,25 +90,19 @@ def color(folder: Path, surface: dict) -> dict:
     if kind == "uniform":
         return {"type": "rgb", "value": surface["color"]}
     if kind == "texture":
-        texels = linear(folder, surface)[:, :, :3] * np.array(surface["factor"], np.float32)
+        texels = linear(folder, surface) * np.array(surface["factor"], np.float32)
         return bitmap(texels)
     colors = {f"color{i}": {"type": "rgb", "value": value} for i, value in enumerate(surface["colors"])}
     return {"type": "pattern", "kind": kind, "count": surface["count"], "colors": len(colors)} | colors
 
 
 def linear(folder: Path, surface: dict) -> np.ndarray:
-    """Texels as linear RGBA; the first row is v = 0."""
+    """Texels as linear RGB; the first row is v = 0."""
     shape = (surface["height"], surface["width"], 4)
-    texels = np.fromfile(folder / surface["file"], np.uint8).reshape(shape).astype(np.float32) / 255
-    if surface["srgb"]:
-        rgb = texels[:, :, :3]
-        texels[:, :, :3] = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-    return texels
-
-
-def cutout(folder: Path, surface: dict, cutoff: float) -> dict:
-    """Opacity 0 or 1."""
-    return {"type": "cutout", "alpha": bitmap(linear(folder, surface)[:, :, 3:]), "cutoff": cutoff}
+    texels = np.fromfile(folder / surface["file"], np.uint8).reshape(shape)[:, :, :3].astype(np.float32) / 255
+    if not surface["srgb"]:
+        return texels
+    return np.where(texels <= 0.04045, texels / 12.92, ((texels + 0.055) / 1.055) ** 2.4)
 
 
 def bitmap(texels: np.ndarray) -> dict:
