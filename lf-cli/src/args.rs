@@ -69,6 +69,10 @@ pub(crate) struct DemoArgs {
     /// Width and height of the pictures in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(16..=4096))]
     pub(crate) size: u32,
+    /// Samples of each ray of the ray-traced pictures, which the others are measured against [default: as many as by
+    /// --samples, with global light four times as many]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) reference_samples: Option<u32>,
     /// Draw on the CPU even if there is a GPU
     #[arg(long)]
     pub(crate) cpu: bool,

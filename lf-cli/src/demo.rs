@@ -4,11 +4,13 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use glam::Vec3;
 use lf_capture::Options;
 use lf_compress::{PackOptions, PackedLightField};
 use lf_math::{CubeMap, Image, Pinhole, PlanePlacement, TriangleMesh};
 use lf_report::{Figure, Machine, MethodResult, Report};
-use lf_scene::capture_cube;
+use lf_scene::reference::Reference;
+use lf_scene::{Illumination, Quality, capture_cube};
 
 use crate::args::{DemoArgs, FileArgs, Sampling};
 use crate::capture::{Captured, capture_to};
@@ -52,7 +54,8 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
     let captured = capture(args, &source, &file)?;
     // From here on everything comes from the file.
     let field = load(&FileArgs::new(&file))?;
-    let prepared = prepare(source, captured, &field)?;
+    let mut prepared = prepare(source, captured, &field)?;
+    prepared.source.tracer = prepared.source.tracer.with_quality(reference_quality(args));
     let cpu = CpuSide::new(&field, &prepared.cube)?;
     let gpu = or_cpu(open_gpu(args.cpu).map(|gpu| GpuSide::new(gpu, &field, &prepared.cube, args.size)));
     let stage = Stage { source: &prepared.source, cpu: &cpu, gpu: gpu.as_ref() };
@@ -70,6 +73,16 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
     let open = format!("\n{:.0} s; open {}", start.elapsed().as_secs_f64(), args.out.join("report.html").display());
     let lines = [vec![report.to_markdown_table()], report.headlines(), vec![open]].concat();
     print(&lines.join("\n"))
+}
+
+/// How well the ray-traced pictures are traced: better than texels, several of which make a pixel.
+fn reference_quality(args: &DemoArgs) -> Quality {
+    let quality = args.scene.light.quality();
+    let times = match quality.illumination {
+        Illumination::Direct => 1,
+        Illumination::Global { .. } => 4,
+    };
+    Quality { samples: args.reference_samples.unwrap_or(quality.samples.saturating_mul(times)), ..quality }
 }
 
 const PARALLAX_CAPTION: &str = "The middle of the sphere from six eyes 7° apart. In the traced and in the slab pictures \
@@ -183,7 +196,10 @@ fn report(
         results.push(MethodResult {
             reflector: name.clone(),
             method: "ray tracing".into(),
-            parameters: "reference, 1 ray a pixel; scene, hierarchy and textures in memory".into(),
+            parameters: format!(
+                "reference, 1 ray a pixel, samples of it: {}; scene, hierarchy and textures in memory",
+                prepared.source.tracer.quality().samples
+            ),
             device: "CPU".into(),
             eyes: vec![],
             timing: frames.reference_timing.clone(),
@@ -197,6 +213,7 @@ fn report(
         "The reference reflects the surroundings once; the reflector's image in itself is left out in all methods."
             .to_owned(),
     ];
+    notes.extend(frames.iter().filter_map(|(name, frames)| noise_note(name, frames)));
     notes.extend(frames.iter().filter_map(|(name, frames)| parity_note(name, frames)));
     Ok(Report {
         title: format!("Reflections in {}", prepared.source.name()),
@@ -263,6 +280,17 @@ fn placement(sampling: &Sampling) -> String {
         PlanePlacement::CellCenter => "through the cell's centre".to_owned(),
         PlanePlacement::Offset(offset) => format!("{offset} m from the cell's centre"),
     }
+}
+
+/// How well the references of a reflector are known, if they are noisy.
+fn noise_note(name: &str, frames: &ReflectorFrames) -> Option<String> {
+    let sum = |of: fn(&Reference) -> &Image<Vec3>| {
+        let texels = frames.references.iter().flat_map(|reference| of(reference).texels());
+        texels.map(|color| color.as_dvec3().element_sum()).sum::<f64>()
+    };
+    let share = sum(|reference| &reference.standard_error) / sum(|reference| &reference.radiance);
+    let noisy = share.is_finite() && share > 0.0;
+    noisy.then(|| format!("{name}: the standard error of the references is {:.2} % of their radiance.", 100.0 * share))
 }
 
 /// How far the GPU's slab pictures are from the CPU's, if both were drawn.
