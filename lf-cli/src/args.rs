@@ -15,7 +15,7 @@ use lf_math::PlanePlacement;
 use crate::capture_args::{CaptureArgs, CubemapArgs, MergeArgs};
 use crate::exchange_args::{ExportArgs, ImportArgs};
 use crate::plan_args::PlanArgs;
-use crate::scene_args::{SceneArgs, ViewArgs};
+use crate::scene_args::{LightArgs, SceneArgs, ViewArgs};
 
 /// Reflections with parallax from light field slabs: capture, compress, inspect and render them.
 #[derive(Debug, Parser)]
@@ -112,6 +112,12 @@ pub(crate) struct RenderArgs {
     /// Draw on the CPU even if there is a GPU
     #[arg(long)]
     pub(crate) cpu: bool,
+    /// Trace the same mirror in this scene, an embedded one or a glTF file, put the pictures and their difference side by side,
+    /// and print the error
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(crate) against: Option<String>,
+    #[command(flatten)]
+    pub(crate) light: LightArgs,
 }
 
 /// Memory that reading a file may take, MiB.

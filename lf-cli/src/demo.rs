@@ -4,12 +4,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use glam::Vec3;
 use lf_capture::Options;
 use lf_compress::{PackOptions, PackedLightField};
 use lf_math::{CubeMap, Image, Pinhole, PlanePlacement, TriangleMesh};
 use lf_report::{Figure, Machine, MethodResult, Report};
-use lf_scene::reference::Reference;
 use lf_scene::{Illumination, Quality, capture_cube};
 
 use crate::args::{DemoArgs, FileArgs, Sampling};
@@ -18,7 +16,7 @@ use crate::device::{CpuSide, GpuSide, open_gpu, or_cpu};
 use crate::frames::{Asked, MethodFrames, ReflectorFrames, Stage, agreement, full_orbit, orbit};
 use crate::input::load;
 use crate::output::{megabytes, png, print, progress_bar, write, write_exr};
-use crate::pictures::{ERROR_GAIN, difference, middle, sheet, shrunk, strip};
+use crate::pictures::{ERROR_GAIN, difference, middle, noise, sheet, shrunk, strip};
 use crate::sources::{Source, builtin, from_file};
 
 /// Texels along the edge of the environment map's faces, and rays per texel and axis.
@@ -284,13 +282,10 @@ fn placement(sampling: &Sampling) -> String {
 
 /// How well the references of a reflector are known, if they are noisy.
 fn noise_note(name: &str, frames: &ReflectorFrames) -> Option<String> {
-    let sum = |of: fn(&Reference) -> &Image<Vec3>| {
-        let texels = frames.references.iter().flat_map(|reference| of(reference).texels());
-        texels.map(|color| color.as_dvec3().element_sum()).sum::<f64>()
-    };
-    let share = sum(|reference| &reference.standard_error) / sum(|reference| &reference.radiance);
-    let noisy = share.is_finite() && share > 0.0;
-    noisy.then(|| format!("{name}: the standard error of the references is {:.2} % of their radiance.", 100.0 * share))
+    let radiance = frames.references.iter().flat_map(|reference| reference.radiance.texels());
+    let error = frames.references.iter().flat_map(|reference| reference.standard_error.texels());
+    let share = noise(radiance.zip(error)).filter(|share| *share > 0.0)?;
+    Some(format!("{name}: the standard error of the references is {:.2} % of their radiance.", 100.0 * share))
 }
 
 /// How far the GPU's slab pictures are from the CPU's, if both were drawn.

@@ -20,6 +20,14 @@ pub(crate) fn display(linear: &Image<Vec3>) -> Image<[u8; 4]> {
     })
 }
 
+/// The mean standard error of radiances, as a share of their mean; `None` if it is not known. Takes radiances with their errors.
+pub(crate) fn noise<'a>(known: impl Iterator<Item = (&'a Vec3, &'a Vec3)>) -> Option<f64> {
+    let sum = |color: &Vec3| color.as_dvec3().element_sum();
+    let add = |(radiance, error), (l, e): (&Vec3, &Vec3)| (radiance + sum(l), error + sum(e));
+    let (radiance, error) = known.fold((0.0, 0.0), add);
+    Some(error / radiance).filter(|share| share.is_finite())
+}
+
 /// `front` where it is opaque, `back` elsewhere. Both must have the same size.
 pub(crate) fn over(front: &Image<[u8; 4]>, back: &Image<[u8; 4]>) -> Image<[u8; 4]> {
     masked(front, &front.map(|texel| texel[3] != 0), back)

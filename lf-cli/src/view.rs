@@ -5,11 +5,11 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 use glam::Vec3;
-use lf_math::{Image, Pinhole};
+use lf_math::Pinhole;
 use lf_scene::{Environment, Estimate, Light, Material, Scattering, Scene, SceneCamera, Surface, Tracer, view};
 
 use crate::output::{check_writable, megabytes, png, print, progress_bar, write, write_exr_channels};
-use crate::pictures::display;
+use crate::pictures::{display, noise};
 use crate::scene_args::ViewArgs;
 use crate::sources::{Loaded, find_camera};
 
@@ -30,7 +30,10 @@ pub(crate) fn run(args: &ViewArgs) -> Result<()> {
     let bar = progress_bar(args.size.height.into(), "view", "rows");
     let picture = view(&tracer, &camera, &|done| bar.set_position(done));
     bar.finish_and_clear();
-    eprintln!("{}", noise(&picture));
+    match noise(picture.texels().iter().map(|estimate| (&estimate.radiance, &estimate.standard_error))) {
+        Some(share) => eprintln!("noise    standard error {:.2} % of the radiance, mean of all pixels", 100.0 * share),
+        None => eprintln!("noise    not known from one sample a pixel"),
+    }
     if is_exr {
         let channels = ["R", "G", "B", "error.R", "error.G", "error.B", "Z"];
         return write_exr_channels(out, channels, &picture.map(values));
@@ -41,17 +44,6 @@ pub(crate) fn run(args: &ViewArgs) -> Result<()> {
 /// Radiance, its standard error and distance.
 fn values(Estimate { radiance: l, standard_error: e, distance, .. }: Estimate) -> [f32; 7] {
     [l.x, l.y, l.z, e.x, e.y, e.z, distance]
-}
-
-/// How well the picture is known.
-fn noise(picture: &Image<Estimate>) -> String {
-    let sum = |of: fn(&Estimate) -> Vec3| picture.texels().iter().map(|e| of(e).as_dvec3().element_sum()).sum::<f64>();
-    let share = sum(|estimate| estimate.standard_error) / sum(|estimate| estimate.radiance);
-    if share.is_finite() {
-        format!("noise    standard error {:.2} % of the radiance, mean of all pixels", 100.0 * share)
-    } else {
-        "noise    not known from one sample a pixel".to_owned()
-    }
 }
 
 /// Whether a picture is OpenEXR, else PNG, by its name.
