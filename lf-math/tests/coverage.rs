@@ -1,5 +1,8 @@
 //! The separable crop against closed forms, enumeration and random rays.
 
+mod any_slab;
+
+use any_slab::any_slab;
 use glam::{DVec3, Vec2, Vec3};
 use lf_math::{Cell, Coverage, Face, LightFieldGeometry, PlanePlacement, Ray, SampledAxis, Slab};
 use proptest::prelude::*;
@@ -96,24 +99,6 @@ fn windows_hold_every_block_that_is_touched() {
     let share = exact as f64 / (cameras * cameras * blocks * blocks) as f64;
     assert_eq!(outside, 0);
     assert!((0.275..0.285).contains(&share), "{share}");
-}
-
-/// Cells, planes and slabs of all kinds; rays from anywhere in the cell, its corners and edges among them.
-fn any_slab() -> impl Strategy<Value = (Cell, Slab)> {
-    let half = prop::array::uniform3(0.05f32..4.0);
-    let plane = prop_oneof![Just(1.0f32), Just(0.0), Just(-1.0), -3.0f32..3.0];
-    let counts = prop::array::uniform4(1u32..40);
-    let reach = prop::array::uniform4(0.2f32..3.0);
-    let depth = prop::option::of(0.1f32..30.0);
-    (half, 0u8..6, plane, counts, reach, depth).prop_map(|(half, face, plane, counts, reach, depth)| {
-        let cell = Cell::new(DVec3::ZERO, Vec3::from(half)).unwrap();
-        let face = Face::from_index(face).unwrap();
-        let axis =
-            |i: usize, scale: f32| SampledAxis::spanning(-reach[i] * scale, reach[i] * scale * 0.9, counts[i]).unwrap();
-        let [s, t] = face.tangents().map(|axis| half[axis] + half[face.axis()]);
-        let plane = face.sign() * plane * half[face.axis()];
-        (cell, Slab::new(face, plane, [axis(0, s), axis(1, t)], [axis(2, 1.0), axis(3, 1.0)], depth).unwrap())
-    })
 }
 
 fn ray_in(cell: &Cell, slab: &Slab, at: [f32; 3], slopes: [f32; 2], length: f32) -> Ray {

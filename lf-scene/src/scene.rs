@@ -182,9 +182,9 @@ impl SceneBuilder {
         }
     }
 
-    /// Adds a ball of 320 triangles, smoothly shaded.
-    pub fn ball(&mut self, center: Vec3, radius: f32, material: u32) {
-        let mesh = reflectors::sphere(2);
+    /// Adds a ball of 20·4ⁿ triangles, n being `subdivisions`, smoothly shaded.
+    pub fn ball(&mut self, center: Vec3, radius: f32, subdivisions: u32, material: u32) {
+        let mesh = reflectors::sphere(subdivisions);
         for triangle in mesh.triangles() {
             let corners = triangle.map(|i| {
                 let normal = mesh.normals()[i as usize];

@@ -8,7 +8,7 @@ use std::f32::consts::PI;
 use glam::{DVec3, Vec3};
 use lf_math::Cell;
 
-use super::{fine_ball, room};
+use super::{FINE, room};
 use crate::environment::Environment;
 use crate::light::{Light, Lighting};
 use crate::material::{Material, Pattern};
@@ -30,7 +30,7 @@ pub fn scene() -> Scene {
     builder.cuboid(Vec3::new(0.0, 0.0, 0.6), Vec3::new(0.4, 2.2, 0.8), post);
     // Beside the −X face, between the planes of all others.
     let yellow = builder.material(Material::diffuse(Vec3::new(0.85, 0.7, 0.05)));
-    fine_ball(&mut builder, Vec3::new(-0.75, 1.3, -0.2), 0.2, yellow);
+    builder.ball(Vec3::new(-0.75, 1.3, -0.2), 0.2, FINE, yellow);
     let lamp = Light::Point { position: Vec3::new(1.5, 2.7, 1.8), intensity: PI * Vec3::new(3.2, 3.0, 2.7) };
     let lighting = Lighting { lights: vec![lamp], ambient: Vec3::splat(0.35), environment: Environment::BLACK };
     builder.build("beside", lighting).unwrap_or_else(|_| unreachable!("the room is made of finite triangles"))

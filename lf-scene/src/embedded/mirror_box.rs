@@ -5,7 +5,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use lf_math::Cell;
 
-use super::{fine_ball, room};
+use super::{FINE, room};
 use crate::environment::Environment;
 use crate::light::Lighting;
 use crate::material::{Material, Pattern, Surface};
@@ -35,7 +35,7 @@ pub fn scene() -> Scene {
     room(&mut builder, (min, max), 2.0, [floor, ceiling, walls]);
     for (center, radius) in BALLS {
         let mirror = builder.material(Material::mirror(Vec3::splat(0.95)));
-        fine_ball(&mut builder, center, radius, mirror);
+        builder.ball(center, radius, FINE, mirror);
     }
     panels(&mut builder);
     let lighting = Lighting { ambient: Vec3::splat(0.25), ..Lighting::from_environment(Environment::BLACK) };

@@ -9,8 +9,7 @@ pub mod museum;
 use glam::{Vec2, Vec3};
 use lf_math::Cell;
 
-use crate::reflectors;
-use crate::scene::{Scene, SceneBuilder, Vertex};
+use crate::scene::{Scene, SceneBuilder};
 
 /// A scene that this crate carries.
 #[derive(Debug, Clone, Copy)]
@@ -59,6 +58,9 @@ pub const EMBEDDED: [EmbeddedScene; 5] = [
     },
 ];
 
+/// Subdivisions of balls that mirror, or are seen from near: 20 480 triangles.
+const FINE: u32 = 5;
+
 /// Floor, ceiling and walls of a box, facing inwards. Texture coordinates are metres times `uv_per_m`.
 fn room(builder: &mut SceneBuilder, (min, max): (Vec3, Vec3), uv_per_m: f32, [floor, ceiling, walls]: [u32; 3]) {
     let e = max - min;
@@ -73,18 +75,6 @@ fn room(builder: &mut SceneBuilder, (min, max): (Vec3, Vec3), uv_per_m: f32, [fl
     ];
     for (corner, u, v, material) in faces {
         builder.parallelogram(corner, u, v, uv_per_m * Vec2::new(u.length(), v.length()), material);
-    }
-}
-
-/// A ball of 20 480 triangles, smoothly shaded.
-fn fine_ball(builder: &mut SceneBuilder, center: Vec3, radius: f32, material: u32) {
-    let mesh = reflectors::sphere(5);
-    for triangle in mesh.triangles() {
-        let corners = triangle.map(|i| {
-            let normal = mesh.normals()[i as usize];
-            Vertex { position: center + normal * radius, normal, uv: Vec2::ZERO }
-        });
-        builder.triangle(corners, material);
     }
 }
 

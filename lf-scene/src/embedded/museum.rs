@@ -139,7 +139,7 @@ fn near_objects(builder: &mut SceneBuilder) {
         if i == 1 {
             builder.cuboid(place + Vec3::new(-0.15, 1.1, -0.15), place + Vec3::new(0.15, 1.4, 0.15), paint);
         } else {
-            builder.ball(place + Vec3::Y * 1.27, 0.17, paint);
+            builder.ball(place + Vec3::Y * 1.27, 0.17, 2, paint);
         }
     }
 }
