@@ -40,8 +40,10 @@ class Agreement:
     beyond_three: float
     # Difference of the means over all rays in standard errors, the worst channel.
     mean_difference: float
-    # Mean over all rays and channels, ours over theirs, less 1.
+    # Mean over all rays and channels, ours over theirs, less 1; and of the rays that meet a surface whose interpolated normal is within a
+    # degree of the triangle's.
     mean_ratio: float
+    mean_ratio_flat: float
     # Million rays a second, ours and theirs: nearest hits, then paths.
     hits_per_second: list
     paths_per_second: list
@@ -64,11 +66,12 @@ def compare(folder: Path, samples: int) -> Agreement:
     start = time.monotonic()
     theirs, error = radiance(loaded, rays, summary["bounces"], samples)
     seconds = time.monotonic() - start
-    return agreement(summary, ours, (distance, theirs, error), (hit_seconds, seconds / samples * summary["samples"]))
+    reply = (distance, theirs, error, is_flat(loaded, rays))
+    return agreement(summary, ours, reply, (hit_seconds, seconds / samples * summary["samples"]))
 
 
 def agreement(summary: dict, ours: np.ndarray, reply: tuple, seconds: tuple) -> Agreement:
-    (distance, theirs, error), (hit_seconds, path_seconds) = reply, seconds
+    (distance, theirs, error, flat), (hit_seconds, path_seconds) = reply, seconds
     mean, own_error = ours[:, 0:3], ours[:, 3:6]
     same = np.isclose(ours[:, 6], distance, rtol=1e-3) | (np.isinf(ours[:, 6]) & np.isinf(distance))
     difference, variance = mean - theirs, own_error**2 + error**2
@@ -87,6 +90,7 @@ def agreement(summary: dict, ours: np.ndarray, reply: tuple, seconds: tuple) -> 
         beyond_three=float(np.mean(z > 3)) if z.size else 0.0,
         mean_difference=float(np.max(np.abs(np.sum(difference, axis=0)) / np.maximum(total, 1e-30))) if z.size else 0.0,
         mean_ratio=float(np.mean(mean) / np.mean(theirs) - 1),
+        mean_ratio_flat=float(np.mean(mean[flat]) / np.mean(theirs[flat]) - 1),
         hits_per_second=[count / summary["nearest_hit_seconds"] / 1e6, count / hit_seconds / 1e6],
         paths_per_second=[paths / summary["seconds"] / 1e6, paths / path_seconds / 1e6],
     )
@@ -109,6 +113,19 @@ def nearest(scene: mi.Scene, rays: np.ndarray) -> tuple[np.ndarray, float]:
     dr.eval(scene.ray_intersect_preliminary(beam).t)
     dr.sync_thread()
     return distance.astype(np.float64), (time.monotonic() - start) / repeats
+
+
+def is_flat(scene: mi.Scene, rays: np.ndarray) -> np.ndarray:
+    """Whether the interpolated normal where a ray hits is within a degree of the triangle's, on either side."""
+
+    def cosine(hit: mi.SurfaceInteraction3f):
+        return dr.abs(dr.dot(hit.n, hit.sh_frame.n))
+
+    if mi.variant().startswith("scalar"):
+        cosines = np.array([cosine(scene.ray_intersect(ray(values))) for values in rays])
+    else:
+        cosines = np.array(cosine(scene.ray_intersect(beams(rays))))
+    return cosines > np.cos(np.radians(1))
 
 
 def radiance(scene: mi.Scene, rays: np.ndarray, bounces: int, samples: int) -> tuple[np.ndarray, np.ndarray]:

@@ -3,7 +3,7 @@
     python full.py SCENES ENVIRONMENT OUT
 
 SCENES is the folder with `wooden-staircase.glb`, `japanese-classroom.glb` and `grey-white-room-small.glb`, ENVIRONMENT a panorama (.hdr)
-that lights the last, OUT a folder for the scenes as Mitsuba reads them. Takes about a quarter of an hour on two cores. Prints a table
+that lights the last, OUT a folder for the scenes as Mitsuba reads them. Takes some minutes on two cores. Prints a table
 in Markdown.
 """
 
@@ -48,6 +48,7 @@ def row(result) -> str:
         f"{100 * result.beyond_three:.2f} %",
         f"{result.mean_difference:.2f} σ",
         f"{100 * result.mean_ratio:+.3f} %",
+        f"{100 * result.mean_ratio_flat:+.3f} %",
         f"{100 * result.other_hits:.3f} %",
     ]
     return f"| {' | '.join([result.scene, light, *figures, *rates])} |"
@@ -60,8 +61,8 @@ def main() -> None:
     import plugins
 
     plugins.register()
-    print("| scene | light | relMSE | beyond noise | further than 3 σ | difference of means | ratio of means − 1 | other hit | nearest hits, M/s | paths, M/s |")
-    print("|---|---|--:|--:|--:|--:|--:|--:|--:|--:|")
+    print("| scene | light | relMSE | beyond noise | further than 3 σ | difference of means | ratio of means − 1 | where flat | other hit | nearest hits, M/s | paths, M/s |")
+    print("|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|")
     for name, scene in scenes(folder, environment).items():
         for light, options in (("direct", DIRECT), ("global", GLOBAL)):
             place = out / f"{name}-{light}"
