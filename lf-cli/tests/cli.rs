@@ -36,9 +36,9 @@ fn small_file(folder: &Path) -> String {
 
 #[test]
 fn every_command_has_help() {
-    for command in
-        ["demo", "view", "capture", "merge", "cubemap", "render", "info", "validate", "crop", "export", "import"]
-    {
+    for command in [
+        "demo", "view", "capture", "merge", "cubemap", "render", "info", "validate", "crop", "export", "plan", "import",
+    ] {
         let output = lfslab(&[command, "--help"]);
         assert!(output.status.success());
         assert!(text(&output.stdout).contains("Usage: lfslab"), "{command}");
@@ -66,6 +66,31 @@ fn a_captured_file_is_shown_checked_and_rendered() {
         assert_eq!(decoded.get_pixel(0, 0).0, [40, 40, 44]);
         assert_ne!(decoded.get_pixel(32, 32).0, [40, 40, 44]);
     }
+}
+
+/// The error against the scene that was captured is the smaller one; with noise it is said how much.
+#[test]
+fn a_picture_is_held_against_a_scene() {
+    let folder = TempDir::new().unwrap();
+    let file = small_file(folder.path());
+    let picture = folder.path().join("against.png").to_string_lossy().into_owned();
+    let render = |rest: &[&str]| {
+        let arguments = ["render", &file, "--cpu", "--reflector", "sphere", "--size", "48", "--out", &picture];
+        let output = lfslab(&[&arguments, rest].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    let decibels = |scene: &str| {
+        let said = render(&["--against", scene]);
+        let number = said.split_whitespace().skip_while(|word| !word.ends_with(':')).nth(1);
+        number.and_then(|word| word.parse::<f64>().ok()).unwrap_or_else(|| panic!("{said}"))
+    };
+    let (own, other) = (decibels("museum"), decibels("corridor"));
+    assert!(own > other + 1.0, "{own} {other}");
+    let noisy = render(&["--against", "museum", "--light", "global", "--samples", "2"]);
+    assert!(noisy.contains("standard error is "), "{noisy}");
+    let drawn = image::open(&picture).unwrap();
+    assert_eq!(drawn.width(), 3 * (48 + 4) + 4);
 }
 
 #[test]
