@@ -13,7 +13,7 @@ use crate::error::CaptureError;
 use crate::identity;
 
 /// The metadata entry of a depth file that says what its texels are.
-const DEPTH_KEY: &str = "texels";
+const DEPTH_KEY: &str = "lfslab.texels";
 const DEPTH_TEXT: &str = "inverse depth of what the middle ray of each texel meets: 1/m along the axis of the face from the \
     camera plane, negative behind it, at most 65504 either way, 0 if nothing is met; red, green and blue alike";
 

@@ -352,6 +352,9 @@ fn depth_is_the_inverse_distance_from_the_camera_plane() {
     let [_, depth] = files(&mut [journal], folder.path());
     let stored = read(&depth);
     assert_eq!(stored.geometry(), plan.geometry());
+    let container = Container::parse(&depth, &Limits::default()).unwrap();
+    // Keys without a dot are the registry's.
+    assert!(container.metadata().get("lfslab.texels").is_some_and(|text| text.starts_with("inverse depth")));
     let texels = stored.decode_linear(1 << 30).unwrap();
     for (number, slab) in plan.geometry().slabs().iter().enumerate() {
         for camera in (0..5).flat_map(|t| (0..4).map(move |s| [s, t])) {
