@@ -142,11 +142,12 @@ pub(crate) fn builtin(name: &str, cell: &Cell) -> Result<(String, TriangleMesh)>
 
 /// A reflector from an OBJ file, labelled by the file's stem.
 pub(crate) fn from_file(path: &Path, cell: &Cell) -> Result<(String, TriangleMesh)> {
-    let mesh = import_obj(path)?;
+    let imported = import_obj(path)?;
+    warn(path, &imported.warnings);
     let stem = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
     // Not to be mixed up with the one that is always drawn.
     let label = if stem == "sphere" { "sphere mesh".to_owned() } else { stem.into_owned() };
-    fitted(label, &mesh, cell).with_context(|| path.display().to_string())
+    fitted(label, &imported.mesh, cell).with_context(|| path.display().to_string())
 }
 
 /// A mesh in cell space that stays inside the cell.

@@ -221,6 +221,24 @@ mod tests {
         }
     }
 
+    /// Shading normals may lie at right angles to the viewer.
+    #[test]
+    fn grazing_viewers_have_numbers() {
+        let mut random = Random::of([7]);
+        for bsdf in models() {
+            for _ in 0..1000 {
+                let light = cosine_hemisphere(Vec2::new(random.uniform(), random.uniform()));
+                let grazing = bsdf.evaluate(Vec3::X, light).unwrap();
+                let almost = bsdf.evaluate(Vec3::new(1.0, 0.0, 1e-6), light).unwrap();
+                assert!(grazing.value.is_finite() && grazing.pdf.is_finite(), "{bsdf:?}, {light}: {grazing:?}");
+                let (apart, pdf) = ((grazing.value - almost.value).length(), (grazing.pdf - almost.pdf).abs());
+                assert!(apart <= 1e-3 * almost.value.length() && pdf <= 1e-3 * almost.pdf, "{bsdf:?}, {light}");
+                let sample = bsdf.sample(Vec3::X, &mut random);
+                assert!(sample.is_none_or(|s| s.towards.is_finite() && s.weight.is_finite()), "{bsdf:?}: {sample:?}");
+            }
+        }
+    }
+
     /// Known values: normal incidence, Brewster's angle, the critical angle.
     #[test]
     fn fresnel_at_special_angles() {

@@ -189,11 +189,13 @@ mod tests {
         let geometry = geometry();
         let coord = geometry.slabs()[4].index_ray(&ray);
         let captured = geometry.capture_ray(4, coord.st, coord.uv);
-        let seen = trace_in_cell_space(&box_scene(true), geometry.cell(), &captured).radiance;
-        assert_eq!(seen, Vec3::ONE);
+        let tracer = box_scene(true);
+        let seen = |ray: &Ray| trace_in_cell_space(&tracer, geometry.cell(), ray).radiance;
+        assert_eq!(seen(&captured), Vec3::ONE);
         // A pinhole camera on the extended plane stands behind the post and misses it.
         let pinhole = geometry.slabs()[4].sample_ray(coord.st, coord.uv);
         assert!(pinhole.origin.x > 0.9);
+        assert_ne!(seen(&pinhole), Vec3::ONE);
     }
 
     #[test]

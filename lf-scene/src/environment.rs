@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 use lf_math::{GeometryError, Image};
 
 use crate::distribution::Distribution;
+use crate::light::MAX_RADIANCE;
 use crate::material::luminance;
 use crate::random::Random;
 
@@ -81,16 +82,19 @@ fn at_height(y: f64, angle: f32) -> Vec3 {
 }
 
 impl EnvironmentMap {
-    /// A panorama of linear RGB radiance, W/(m²·sr), turned about +Y by `turn` radians.
+    /// A panorama of linear RGB radiance, W/(m²·sr), turned about +Y by `turn` radians. Radiance above 10⁹ is taken for 10⁹.
     ///
     /// # Errors
     /// All values must be finite and none negative; the turn must be finite.
-    pub fn new(radiance: Image<Vec3>, turn: f32) -> Result<Self, GeometryError> {
+    pub fn new(mut radiance: Image<Vec3>, turn: f32) -> Result<Self, GeometryError> {
         let values = radiance.texels().iter().flat_map(Vec3::to_array).chain([turn.abs()]);
         for value in values {
             if !(value.is_finite() && value >= 0.0) {
                 return Err(GeometryError::NotFinite { what: "radiance of the environment", value });
             }
+        }
+        for texel in radiance.texels_mut() {
+            *texel = texel.min(Vec3::splat(MAX_RADIANCE));
         }
         let mut map = Self { radiance, turn, cells: None };
         let columns = map.radiance.width();
@@ -213,6 +217,19 @@ mod tests {
         for _ in 0..10_000 {
             let (direction, _) = sky.sample(&mut random).unwrap();
             assert!(environment.towards(direction) == Vec3::ZERO || environment.pdf(direction) > 0.0);
+        }
+    }
+
+    #[test]
+    fn the_brightest_texels_leave_densities_that_are_numbers() {
+        let texel = |i: u32| if i == 3 { Vec3::splat(f32::MAX) } else { Vec3::ONE };
+        let image = Image::new(8, 4, (0..32).map(texel).collect()).unwrap();
+        let environment = Environment::Map(Arc::new(EnvironmentMap::new(image, 0.0).unwrap()));
+        let mut random = Random::of([3]);
+        for _ in 0..1000 {
+            let (direction, pdf) = environment.sample(&mut random).unwrap();
+            assert!(pdf.is_finite() && pdf > 0.0 && environment.pdf(direction).is_finite(), "{direction}: {pdf}");
+            assert!(environment.towards(direction).max_element() <= 1e9);
         }
     }
 

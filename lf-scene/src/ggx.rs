@@ -43,11 +43,12 @@ impl Glossy {
         let half = lf_math::normalized(viewer + light).unwrap_or(Vec3::Z);
         let cosine = viewer.dot(half);
         let facets = self.facets(half);
-        let specular = facets * self.visible(viewer) * self.visible(light) / (4.0 * viewer.z);
+        // The cosine of the viewer cancels: a viewer in the plane of the surface has one of 0.
+        let by_facets = 0.25 * facets * self.visible_by_cosine(viewer);
+        let specular = by_facets * self.visible_by_cosine(light) * light.z;
         let diffuse = self.base * (light.z / PI);
         let dielectric = diffuse.lerp(Vec3::splat(specular), schlick(Vec3::splat(DIELECTRIC), cosine).x);
         let metal = specular * schlick(self.base, cosine);
-        let by_facets = facets * self.visible(viewer) / (4.0 * viewer.z);
         let share = self.facet_share(viewer);
         let pdf = share * by_facets + (1.0 - share) * light.z / PI;
         Evaluated { value: dielectric.lerp(metal, self.metallic), pdf }
@@ -79,10 +80,10 @@ impl Glossy {
         1.0 / (PI * a2 * stretched * stretched)
     }
 
-    /// Smith's share of the facets that are seen from a direction.
-    fn visible(&self, direction: Vec3) -> f32 {
+    /// Smith's share of the facets that are seen from a direction, over its cosine.
+    fn visible_by_cosine(&self, direction: Vec3) -> f32 {
         let a2 = self.alpha * self.alpha;
-        2.0 * direction.z / (direction.z + (a2 + (1.0 - a2) * direction.z * direction.z).sqrt())
+        2.0 / (direction.z + (a2 + (1.0 - a2) * direction.z * direction.z).sqrt())
     }
 
     /// A facet normal that the viewer sees (Heitz, Appendix A).

@@ -60,8 +60,8 @@ pub use error::{ImportError, SceneError};
 pub use focus::focus;
 pub use free_space::{FreeSpace, find_free_space, is_free};
 pub use import::{
-    ImportOptions, Imported, ImportedEnvironment, SceneCamera, import_environment, import_gltf, import_gltf_slice,
-    import_obj,
+    ImportOptions, Imported, ImportedEnvironment, ImportedMesh, SceneCamera, import_environment, import_gltf,
+    import_gltf_slice, import_obj,
 };
 pub use light::{Illuminant, Light, Lighting};
 pub use material::{ColorEncoding, Material, Pattern, Scattering, Surface, Texture};

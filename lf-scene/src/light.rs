@@ -7,6 +7,9 @@ use glam::Vec3;
 
 use crate::environment::Environment;
 
+/// The largest radiance that a file may bring, W/(m²·sr): above it products of radiances would leave `f32` in long paths.
+pub(crate) const MAX_RADIANCE: f32 = 1e9;
+
 /// One light without extent, world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {

@@ -187,7 +187,7 @@ impl Texture {
     }
 
     /// Mean of linear RGB.
-    fn mean(&self) -> Vec3 {
+    pub(crate) fn mean(&self) -> Vec3 {
         let texels = self.image.texels();
         let sum: DVec3 = texels.iter().map(|texel| self.linear(*texel).truncate().as_dvec3()).sum();
         (sum / texels.len() as f64).as_vec3()

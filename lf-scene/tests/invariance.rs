@@ -4,11 +4,11 @@ mod oracle;
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
-use lf_math::Image;
+use glam::{DVec3, Vec2, Vec3};
+use lf_math::{Cell, Image, LightFieldGeometry, PlanePlacement};
 use lf_scene::{
     ColorEncoding, Estimate, Illumination, Light, Lighting, Material, Quality, Scene, SceneBuilder, Surface, Texture,
-    Tracer, Vertex, museum, reflectors,
+    Tracer, Vertex, capture_slabs, museum, reflectors,
 };
 use oracle::{add_mesh, dark, emitting, glass, glossy, uniform, with_samples};
 use proptest::prelude::*;
@@ -77,6 +77,19 @@ fn neither_threads_nor_order_nor_company_matter() {
     let mut backwards: Vec<_> = rays.iter().rev().map(|&(o, d)| tracer.estimate(o, d)).collect();
     backwards.reverse();
     assert_eq!(parallel, backwards);
+}
+
+#[test]
+fn threads_do_not_change_global_illumination() {
+    let tracer = with_samples(everything(1.0, Vec3::ZERO), 4, 4);
+    let cell = Cell::cube(DVec3::new(0.0, 1.8, 1.5), 0.8).unwrap();
+    let geometry = LightFieldGeometry::around(cell, PlanePlacement::CellFaces, 2, 5).unwrap();
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let captured = pool.install(|| capture_slabs(&tracer, &geometry, 2, &|_| ()).unwrap());
+        (captured.geometry, captured.texels, pool.install(|| answers(&tracer, &rays(1.0, Vec3::ZERO))))
+    };
+    assert_eq!(run(1), run(3));
 }
 
 #[test]

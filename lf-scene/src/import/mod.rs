@@ -9,14 +9,14 @@ mod gltf;
 mod notes;
 mod obj;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lf_math::{GeometryError, Pinhole};
 
 use crate::{EnvironmentMap, Scene};
 
 pub use self::environment::{ImportedEnvironment, import_environment};
 pub use self::gltf::{import_gltf, import_gltf_slice};
-pub use self::obj::import_obj;
+pub use self::obj::{ImportedMesh, import_obj};
 
 /// How a scene is imported.
 #[derive(Debug, Clone)]
@@ -45,7 +45,8 @@ pub struct Imported {
     pub cameras: Vec<SceneCamera>,
     /// The file's own copyright or licence line.
     pub copyright: Option<String>,
-    /// What the file holds that this importer does not use, or not as it should: one sentence each, with a count.
+    /// What the file holds that this importer does not use, or not as it should: one sentence each, with a count. Then what
+    /// was made up where the file says nothing.
     pub warnings: Vec<String>,
 }
 
@@ -72,4 +73,10 @@ impl SceneCamera {
     pub fn pinhole(&self, width: u32, height: u32) -> Result<Pinhole, GeometryError> {
         Pinhole::looking(self.position, self.forward, self.up, self.fov_y, width, height)
     }
+}
+
+/// The unit normal of a triangle whose corners run anticlockwise; `None` if it has no area.
+fn flat_normal(corners: [Vec3; 3]) -> Option<DVec3> {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    (b - a).cross(c - a).try_normalize()
 }

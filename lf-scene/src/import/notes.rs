@@ -3,12 +3,16 @@
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
+use glam::Vec3;
+use lf_math::normalized;
+
 use crate::ImportError;
 
 /// What a file holds that is not used as it should be, and how often.
 #[derive(Default)]
 pub(super) struct Notes {
     counts: BTreeMap<String, usize>,
+    remarks: Vec<String>,
 }
 
 impl Notes {
@@ -24,6 +28,17 @@ impl Notes {
         }
     }
 
+    /// Says a thing that is not counted: what was put in the place of what the file does not say.
+    pub(super) fn inform(&mut self, what: impl Into<String>) {
+        self.remarks.push(what.into());
+    }
+
+    /// Notes normals without a direction, in whose place computed ones are taken.
+    pub(super) fn normals(&mut self, normals: &[Vec3]) {
+        let broken = normals.iter().filter(|normal| normalized(**normal).is_none()).count();
+        self.count("normals are zero or not finite, and computed instead", broken);
+    }
+
     /// A number brought into its range, which is noted.
     ///
     /// # Errors
@@ -36,8 +51,9 @@ impl Notes {
         Ok(value.clamp(*range.start(), *range.end()))
     }
 
-    /// One sentence for each kind of thing.
+    /// One sentence for each kind of thing, then the remarks.
     pub(super) fn into_warnings(self) -> Vec<String> {
-        self.counts.into_iter().map(|(what, count)| format!("{what} ({count})")).collect()
+        let counts = self.counts.into_iter().map(|(what, count)| format!("{what} ({count})"));
+        counts.chain(self.remarks).collect()
     }
 }

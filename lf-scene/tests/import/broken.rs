@@ -4,7 +4,7 @@ use image::{DynamicImage, ImageFormat, RgbaImage};
 use lf_scene::{ImportError, ImportOptions, import_gltf_slice};
 use serde_json::{Value, json};
 
-use crate::files::{add_picture, encoded, glb, import, refusal, square};
+use crate::files::{add_picture, encoded, glb, import, noted, refusal, square};
 
 #[test]
 fn each_broken_number_is_an_error_that_names_the_place() {
@@ -61,7 +61,7 @@ fn triangles_without_area_are_left_out() {
     binary[138..140].copy_from_slice(&0u16.to_le_bytes());
     let imported = import(&json, &binary).unwrap();
     assert_eq!(imported.scene.triangles().len(), 1);
-    assert_eq!(imported.warnings, ["triangles have no area and are left out (1)"]);
+    assert_eq!(noted(&imported), ["triangles have no area and are left out (1)"]);
     let mut flat = json.clone();
     flat["nodes"][0]["scale"] = json!([1, 0, 0]);
     assert!(refusal(&flat, &binary).contains("no triangles"));
@@ -153,6 +153,32 @@ fn many_nodes_with_one_mesh_stay_within_the_budget() {
     let error = import_gltf_slice("many", &glb(&json, &binary), &options).unwrap_err();
     assert!(matches!(error, ImportError::LimitExceeded { .. }), "{error}");
     assert_eq!(import(&json, &binary).unwrap().scene.triangles().len(), 40_000);
+}
+
+#[test]
+fn buffers_without_bytes_are_named() {
+    let (good, binary) = square();
+    let said = |json: &Value, with_binary: bool| {
+        let text = json.to_string();
+        let bytes = if with_binary { glb(json, &binary) } else { text.into_bytes() };
+        import_gltf_slice("made", &bytes, &ImportOptions::default()).unwrap_err().to_string()
+    };
+    assert_eq!(said(&good, false), "buffer 0: the file has no binary chunk");
+    let mut second = good.clone();
+    second["buffers"].as_array_mut().unwrap().push(json!({ "byteLength": 4 }));
+    assert_eq!(said(&second, true), "buffer 1: it names no file");
+    let mut outside = good.clone();
+    outside["buffers"][0]["uri"] = json!("square.bin");
+    assert_eq!(said(&outside, false), "buffer 0: \"square.bin\" is outside of the file");
+    let mut none = good.clone();
+    none["buffers"] = json!([]);
+    assert!(said(&none, true).starts_with("JSON: bufferViews[0].buffer"), "{}", said(&none, true));
+    // A chunk of another kind is passed over.
+    let mut other = glb(&good, &binary);
+    let place = other.windows(4).position(|bytes| bytes == b"BIN\0").unwrap();
+    other[place..place + 4].copy_from_slice(b"TEXT");
+    let error = import_gltf_slice("made", &other, &ImportOptions::default()).unwrap_err();
+    assert_eq!(error.to_string(), "buffer 0: the file has no binary chunk");
 }
 
 #[test]

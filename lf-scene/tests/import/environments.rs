@@ -4,6 +4,8 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
+use exr::meta::attribute::Chromaticities;
+use exr::prelude::{SpecificChannels, Vec2, WritableImage};
 use glam::Vec3;
 use image::{DynamicImage, ImageFormat, Rgb, Rgb32FImage};
 use lf_scene::{Environment, import_environment};
@@ -50,6 +52,82 @@ fn broken_values_are_mended_and_counted() {
     assert!(imported.warnings.iter().any(|w| w.contains("taken for 0 (2)")));
     for (scale, turn) in [(-1.0, 0.0), (f32::NAN, 0.0), (1.0, f32::INFINITY)] {
         assert!(import_environment(&path, scale, turn).is_err());
+    }
+}
+
+/// A Radiance picture of 2×1 texels of radiance 1 with more lines in its header.
+fn radiance(lines: &str) -> Vec<u8> {
+    let texel = [128, 128, 128, 129];
+    let header = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n{lines}\n-Y 1 +X 2\n");
+    [header.as_bytes(), &texel, &texel].concat()
+}
+
+#[test]
+fn exposures_are_undone() {
+    let path = folder("environments").join("exposed.hdr");
+    let seen = |lines: &str| {
+        fs::write(&path, radiance(lines)).unwrap();
+        let imported = import_environment(&path, 1.0, 0.0).unwrap();
+        (Environment::Map(imported.map.into()).towards(Vec3::Y), imported.warnings)
+    };
+    assert_eq!(seen(""), (Vec3::ONE, vec![]));
+    assert_eq!(seen("EXPOSURE=4\nEXPOSURE= 0.5\n"), (Vec3::splat(0.5), vec![]));
+    assert_eq!(seen("COLORCORR=1 2 4\nEXPOSURE=0.5\n"), (Vec3::new(2.0, 1.0, 0.5), vec![]));
+    for broken in ["EXPOSURE=0\n", "EXPOSURE=-1\n", "EXPOSURE=nan\n", "COLORCORR=1 0 1\n"] {
+        let (radiance, warnings) = seen(broken);
+        assert_eq!(radiance, Vec3::ONE);
+        assert_eq!(warnings, ["exposures of the environment are not positive numbers and not used (1)"]);
+    }
+    let (radiance, warnings) = seen("EXPOSURE=1e-39\n");
+    assert_eq!(radiance, Vec3::splat(1e9));
+    assert_eq!(warnings, ["values of the environment are too bright to calculate with and taken for 1e9 (6)"]);
+}
+
+#[test]
+fn values_that_are_too_bright_are_capped_and_counted() {
+    let path = folder("environments").join("bright.exr");
+    write_exr(&path, |x, y| if (x, y) == (1, 0) { (f32::MAX, 1e38, 1.0) } else { (1.0, 1.0, 1.0) });
+    let imported = import_environment(&path, 1e3, 0.0).unwrap();
+    assert_eq!(imported.warnings, ["values of the environment are too bright to calculate with and taken for 1e9 (2)"]);
+    let map = Environment::Map(imported.map.into());
+    assert!(map.towards(Vec3::Y).is_finite());
+}
+
+#[test]
+fn other_primaries_are_noted() {
+    let path = folder("environments").join("primaries.exr");
+    let write = |blue: f32| {
+        let channels = SpecificChannels::rgb(|_| (1.0f32, 1.0f32, 1.0f32));
+        let mut picture = exr::prelude::Image::from_channels((4, 2), channels);
+        picture.attributes.chromaticities = Some(Chromaticities {
+            red: Vec2(0.64, 0.33),
+            green: Vec2(0.3, 0.6),
+            blue: Vec2(blue, 0.06),
+            white: Vec2(0.3127, 0.329),
+        });
+        picture.write().to_file(&path).unwrap();
+        import_environment(&path, 1.0, 0.0).unwrap().warnings
+    };
+    assert!(write(0.15).is_empty());
+    assert_eq!(write(0.13), ["environments have other primaries than Rec. 709, whose they are taken for (1)"]);
+}
+
+#[test]
+fn absurd_sizes_are_one_clear_error() {
+    let folder = folder("environments");
+    let path = folder.join("size.exr");
+    write_exr(&path, |_, _| (1.0, 2.0, 3.0));
+    let whole = fs::read(&path).unwrap();
+    let window = b"dataWindow\0box2i\0";
+    let place = whole.windows(window.len()).position(|bytes| bytes == window).unwrap() + window.len() + 4;
+    for (last, said) in [([999_999, 999_999], "bytes of memory"), ([i32::MAX, i32::MAX], "OpenEXR picture: ")] {
+        let mut absurd = whole.clone();
+        // Left, top, right, bottom, inclusive.
+        absurd[place + 8..place + 16].copy_from_slice(last.map(i32::to_le_bytes).as_flattened());
+        fs::write(&path, &absurd).unwrap();
+        let error = import_environment(&path, 1.0, 0.0).unwrap_err();
+        let source = std::error::Error::source(&error).unwrap().to_string();
+        assert!(source.contains(said), "{last:?}: {source}");
     }
 }
 

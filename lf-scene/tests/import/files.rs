@@ -94,6 +94,12 @@ pub(crate) fn import(json: &Value, binary: &[u8]) -> Result<Imported, ImportErro
     import_gltf_slice("made", &glb(json, binary), &ImportOptions::default())
 }
 
+/// The warnings but for the one about the sky, which every scene gets for which no environment is given.
+pub(crate) fn noted(imported: &Imported) -> Vec<&str> {
+    let warnings = imported.warnings.iter().map(String::as_str);
+    warnings.filter(|warning| !warning.starts_with("no environment is given")).collect()
+}
+
 /// The error as people see it.
 pub(crate) fn refusal(json: &Value, binary: &[u8]) -> String {
     import(json, binary).map(|imported| imported.warnings).unwrap_err().to_string()

@@ -2,10 +2,10 @@
 
 use glam::{Vec2, Vec3};
 use image::{DynamicImage, ImageFormat, Luma, Rgb, RgbImage, Rgba, RgbaImage};
-use lf_scene::{ColorEncoding, Imported, Material, Scattering, Surface};
+use lf_scene::{ColorEncoding, Imported, Material, Scattering, Surface, Tracer};
 use serde_json::{Value, json};
 
-use crate::files::{add_picture, encoded, import, refusal, square};
+use crate::files::{add_picture, encoded, import, noted, refusal, square};
 
 fn material(value: Value) -> (Material, Imported) {
     let (mut json, binary) = square();
@@ -33,13 +33,14 @@ fn factors_arrive() {
     assert_eq!(material.emission, Surface::Uniform(Vec3::new(2.0, 1.0, 0.0)));
     assert!(material.double_sided && material.alpha_cutoff.is_none());
     assert_eq!(material.scattering, Scattering::MetallicRoughness { metallic: 1.0, roughness: 0.0, texture: None });
-    assert!(imported.warnings.is_empty(), "{:?}", imported.warnings);
+    assert!(noted(&imported).is_empty(), "{:?}", imported.warnings);
 }
 
 #[test]
 fn transmission_becomes_glass() {
     let glass = |extensions: Value| {
-        material(json!({ "pbrMetallicRoughness": { "roughnessFactor": 0 }, "extensions": extensions }))
+        let pbr = json!({ "metallicFactor": 0, "roughnessFactor": 0 });
+        material(json!({ "pbrMetallicRoughness": pbr, "extensions": extensions }))
     };
     let clear = json!({ "transmissionFactor": 1.0 });
     let (pane, _) = glass(json!({ "KHR_materials_transmission": clear }));
@@ -54,6 +55,63 @@ fn transmission_becomes_glass() {
     let (flat, imported) = glass(json!({ "KHR_materials_transmission": clear, "KHR_materials_ior": { "ior": 0.5 } }));
     assert!(matches!(flat.scattering, Scattering::Glass { ior, .. } if ior > 1.0));
     assert!(imported.warnings.iter().any(|warning| warning.contains("out of their range")));
+}
+
+/// Only the part that is not metal transmits, and metal is what a file means that says nothing.
+#[test]
+fn metals_do_not_transmit() {
+    let clear = json!({ "KHR_materials_transmission": { "transmissionFactor": 1.0 } });
+    let cases = [
+        (json!({}), false, Some("are metals, which")),
+        (json!({ "metallicFactor": 0.75 }), false, Some("metals in part")),
+        (json!({ "metallicFactor": 0.25 }), true, Some("metals in part")),
+        (json!({ "metallicFactor": 0, "roughnessFactor": 0 }), true, None),
+    ];
+    for (pbr, expected, said) in cases {
+        let (material, imported) =
+            material(json!({ "pbrMetallicRoughness": pbr, "emissiveFactor": [1, 1, 1], "extensions": clear }));
+        assert_eq!(matches!(material.scattering, Scattering::Glass { .. }), expected, "{pbr}");
+        let notes = noted(&imported);
+        assert!(said.is_none_or(|said| notes.iter().any(|note| note.contains(said))), "{pbr}: {notes:?}");
+        assert!(said.is_some() || notes.is_empty(), "{pbr}: {notes:?}");
+    }
+    // The picture's blue, which is how much metal there is, is 0 on its left and 1 on its right.
+    let (mut json, mut binary) = square();
+    add_picture(&mut json, &mut binary, &encoded(&picture(), ImageFormat::Png), "image/png");
+    let thickness = json!({ "thicknessFactor": 0.1, "thicknessTexture": { "index": 0 } });
+    for (metallic, expected) in [(1.0, false), (0.5, true)] {
+        let transmission = json!({ "transmissionFactor": 0.99 });
+        json["materials"][0] = json!({
+            "pbrMetallicRoughness": { "metallicFactor": metallic, "metallicRoughnessTexture": { "index": 0 } },
+            "extensions": { "KHR_materials_transmission": transmission, "KHR_materials_volume": thickness.clone() }
+        });
+        let imported = import(&json, &binary).unwrap();
+        let scattering = &imported.scene.materials()[0].scattering;
+        assert_eq!(matches!(scattering, Scattering::Glass { .. }), expected, "{metallic}");
+        assert!(imported.warnings.iter().any(|warning| warning.contains("metals in part")), "{:?}", imported.warnings);
+        assert_eq!(imported.warnings.iter().any(|warning| warning.contains("textures of thickness")), expected);
+    }
+}
+
+#[test]
+fn black_pictures_still_cut_holes() {
+    let (mut json, mut binary) = square();
+    add_picture(&mut json, &mut binary, &encoded(&picture(), ImageFormat::Png), "image/png");
+    for (mode, textured) in [("OPAQUE", false), ("MASK", true), ("BLEND", true)] {
+        json["materials"][0] = json!({
+            "pbrMetallicRoughness": { "baseColorFactor": [0, 0, 0, 1], "baseColorTexture": { "index": 0 } },
+            "emissiveTexture": { "index": 0 }, "alphaMode": mode
+        });
+        let imported = import(&json, &binary).unwrap();
+        let material = &imported.scene.materials()[0];
+        assert_eq!(matches!(material.base, Surface::Textured(..)), textured, "{mode}");
+        assert_eq!(material.base.color(Vec2::new(0.25, 0.5)), Vec3::ZERO);
+        assert_eq!(material.emission, Surface::Uniform(Vec3::ZERO));
+        let tracer = Tracer::new(imported.scene);
+        // The left half has alpha ¼, the right half 1.
+        let met = |x: f32| tracer.distance(Vec3::new(5.0 + x, 0.5, 3.0), Vec3::NEG_Z).is_some();
+        assert_eq!((met(0.25), met(0.75)), (!textured, true), "{mode}");
+    }
 }
 
 #[test]
@@ -133,6 +191,26 @@ fn coordinates_follow_the_texture_and_its_transform() {
     assert!(
         warnings.iter().any(|w| w.contains("instead of their own"))
             && warnings.iter().any(|w| w.contains("does not repeat"))
+    );
+}
+
+#[test]
+fn missing_coordinates_and_broken_normals_are_noted() {
+    let (mut json, mut binary) = square();
+    binary[48..52].copy_from_slice(&f32::NAN.to_le_bytes());
+    binary[68..72].copy_from_slice(&0.0f32.to_le_bytes());
+    let imported = import(&json, &binary).unwrap();
+    assert_eq!(noted(&imported), ["normals are zero or not finite, and computed instead (2)"]);
+    assert!(imported.scene.triangles().iter().flat_map(|(corners, _)| corners).all(|v| v.normal == Vec3::Z));
+    let (_, good) = square();
+    json["meshes"][0]["primitives"][0]["attributes"] = json!({ "POSITION": 0, "NORMAL": 1 });
+    assert!(noted(&import(&json, &good).unwrap()).is_empty(), "no texture needs them");
+    binary = good;
+    add_picture(&mut json, &mut binary, &encoded(&picture(), ImageFormat::Png), "image/png");
+    json["materials"][0] = json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } });
+    let imported = import(&json, &binary).unwrap();
+    assert!(
+        noted(&imported).contains(&"primitives lack the texture coordinates that their material uses, taken for 0 (1)")
     );
 }
 

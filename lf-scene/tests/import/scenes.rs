@@ -1,14 +1,16 @@
 //! Nodes, cameras, lights, and the real scenes.
 
+use std::error::Error;
 use std::f32::consts::PI;
 use std::io::Write;
 use std::path::Path;
 
 use glam::Vec3;
-use lf_scene::{Environment, ImportOptions, Light, Tracer, import_gltf};
+use lf_math::Image;
+use lf_scene::{Environment, EnvironmentMap, ImportOptions, Light, Tracer, import_gltf, import_gltf_slice};
 use serde_json::json;
 
-use crate::files::{folder, glb, import, square};
+use crate::files::{folder, glb, import, noted, square};
 
 #[test]
 fn transforms_materials_and_camera_arrive() {
@@ -18,7 +20,7 @@ fn transforms_materials_and_camera_arrive() {
     let camera = &imported.cameras[0];
     assert_eq!((camera.position, camera.forward, camera.up), (Vec3::new(5.2, 0.2, 3.0), Vec3::NEG_Z, Vec3::Y));
     assert_eq!((camera.name.as_deref(), camera.fov_y), (Some("eye"), 0.7));
-    assert!(imported.warnings.is_empty(), "{:?}", imported.warnings);
+    assert!(noted(&imported).is_empty(), "{:?}", imported.warnings);
     assert!(imported.scene.lighting().lights.is_empty(), "what glows needs no lamp");
     let tracer = Tracer::new(imported.scene);
     assert_eq!(tracer.distance(Vec3::new(5.2, 0.2, 3.0), Vec3::NEG_Z), Some(3.0));
@@ -83,6 +85,19 @@ fn only_a_scene_where_nothing_shines_gets_a_lamp() {
 }
 
 #[test]
+fn what_is_made_up_is_said() {
+    let (mut json, binary) = square();
+    json["asset"]["extras"] = json!({ "emitters": [{ "sun_direction_world": [0, 2, 0] }] });
+    let sky = "no environment is given: a blue-white sky of [0.75, 0.85, 1] W/(m²·sr) is put around the scene, with ambient \
+               light of 0.45; --environment sets another";
+    let sun = "the sun's strength is not given: its irradiance is taken for [5.0, 4.7, 4.1] W/m²";
+    assert_eq!(import(&json, &binary).unwrap().warnings, [sun, sky]);
+    let environment = Some(EnvironmentMap::new(Image::filled(2, 1, Vec3::ONE), 0.0).unwrap());
+    let options = ImportOptions { environment, ..ImportOptions::default() };
+    assert_eq!(import_gltf_slice("made", &glb(&json, &binary), &options).unwrap().warnings, [sun]);
+}
+
+#[test]
 fn cameras_are_all_read_and_orthographic_ones_noted() {
     let (mut json, binary) = square();
     json["cameras"] = json!([
@@ -94,7 +109,7 @@ fn cameras_are_all_read_and_orthographic_ones_noted() {
     let imported = import(&json, &binary).unwrap();
     assert_eq!(imported.cameras.len(), 1);
     assert!(imported.cameras[0].name.as_deref() == Some("left") && imported.cameras[0].fov_y < PI);
-    assert_eq!(imported.warnings.len(), 2, "{:?}", imported.warnings);
+    assert_eq!(noted(&imported).len(), 2, "{:?}", imported.warnings);
 }
 
 #[test]
@@ -114,7 +129,8 @@ fn what_is_not_used_is_listed_with_counts() {
     let accessor = json!({ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "sparse": sparse,
         "min": [0, 0, 0], "max": [1, 1, 0] });
     json["accessors"].as_array_mut().unwrap().push(accessor);
-    let warnings = import(&json, &binary).unwrap().warnings;
+    let imported = import(&json, &binary).unwrap();
+    let warnings = noted(&imported);
     for part in
         ["clearcoat", "EXT_of_tomorrow", "animations", "skins", "colours", "morph", "lines are left out (2)", "sparse"]
     {
@@ -137,7 +153,9 @@ fn buffers_and_pictures_may_lie_beside_the_scene() {
     for uri in ["data/missing.bin", "../beside/data/a square.bin", "/etc/hostname", "file:///etc/hostname"] {
         json["buffers"][0]["uri"] = json!(uri);
         std::fs::write(&path, json.to_string()).unwrap();
-        assert!(import_gltf(&path, &ImportOptions::default()).is_err(), "{uri}");
+        let error = import_gltf(&path, &ImportOptions::default()).unwrap_err();
+        let said = error.source().unwrap().to_string();
+        assert!(said.starts_with(if uri == "data/missing.bin" { "cannot read" } else { "buffer 0" }), "{uri}: {said}");
     }
     std::fs::write(&path, glb(&json, &binary)).unwrap();
     assert!(import_gltf(&path, &ImportOptions { memory_bytes: 5000, ..ImportOptions::default() }).is_err());
@@ -161,7 +179,7 @@ fn real_scenes_arrive() {
         let imported = import_gltf(&path, &ImportOptions::default()).unwrap();
         let count = imported.scene.triangles().len();
         assert!((least..=least + least / 10).contains(&count), "{name}: {count} triangles");
-        assert!(imported.warnings.len() <= 4, "{name}: {:?}", imported.warnings);
+        assert!(noted(&imported).len() <= 4, "{name}: {:?}", imported.warnings);
         assert_eq!(imported.cameras.len(), usize::from(name != "godot-living_room"), "{name}");
     }
 }

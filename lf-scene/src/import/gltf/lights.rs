@@ -19,6 +19,12 @@ use crate::scene::SceneBuilder;
 const LUMENS_PER_WATT: f32 = 683.0;
 /// The largest intensity, candela or lux.
 const MAX_INTENSITY: f32 = 1e12;
+/// The zenith of the sky around a scene for which no environment is given, W/(m²·sr).
+const SKY: Vec3 = Vec3::new(0.75, 0.85, 1.0);
+/// Its ambient light, about half of the sky's: rooms hide much of it.
+const AMBIENT: f32 = 0.45;
+/// Radiance of a white surface under a sun of unknown strength, W/(m²·sr): brighter and warmer than the sky.
+const SUNLIT: Vec3 = Vec3::new(1.6, 1.5, 1.3);
 
 /// A light of KHR_lights_punctual at a node; `None` if the node's transform leaves it no direction.
 pub(super) fn convert_light(
@@ -86,9 +92,9 @@ pub(super) fn lighting(
     notes: &mut Notes,
 ) -> Lighting {
     let sun = sun_direction(document, notes);
-    lights.extend(sun.map(|towards| Light::Sun { towards, irradiance: PI * Vec3::new(1.6, 1.5, 1.3) }));
+    lights.extend(sun.map(|towards| assumed_sun(towards, notes)));
     if lights.is_empty() && options.environment.is_none() && !glows(builder) {
-        notes.add("nothing shines: a lamp is put at the camera");
+        notes.inform("nothing shines: a lamp is put at the camera");
         let (min, max) = builder.bounds();
         let position = cameras.first().map_or(0.5 * (min + max), |camera| camera.position + Vec3::Y * 0.3);
         // Makes a white wall a quarter of the scene's diagonal away as bright as white can be shown.
@@ -98,9 +104,20 @@ pub(super) fn lighting(
     match options.environment.clone() {
         Some(map) => Lighting { lights, ambient: Vec3::ZERO, environment: Environment::Map(map.into()) },
         None => {
-            Lighting { lights, ambient: Vec3::splat(0.45), environment: Environment::Sky(Vec3::new(0.75, 0.85, 1.0)) }
+            notes.inform(format!(
+                "no environment is given: a blue-white sky of {SKY} W/(m²·sr) is put around the scene, with ambient light of \
+                 {AMBIENT}; --environment sets another"
+            ));
+            Lighting { lights, ambient: Vec3::splat(AMBIENT), environment: Environment::Sky(SKY) }
         }
     }
+}
+
+/// A sun of which only the direction is known.
+fn assumed_sun(towards: Vec3, notes: &mut Notes) -> Light {
+    let irradiance = PI * SUNLIT;
+    notes.inform(format!("the sun's strength is not given: its irradiance is taken for {irradiance:.1} W/m²"));
+    Light::Sun { towards, irradiance }
 }
 
 /// Whether a triangle emits light.
@@ -125,5 +142,6 @@ fn sun_direction(document: &Document, notes: &mut Notes) -> Option<Vec3> {
         "emitters of asset.extras are not used; give an environment in their place",
         emitters.len() - suns.len(),
     );
+    notes.count("suns of asset.extras beside the first are not used", suns.len().saturating_sub(1));
     suns.first().copied()
 }

@@ -10,7 +10,8 @@ use super::super::budget::Budget;
 use super::super::notes::Notes;
 use super::textures::{Textures, repeats};
 use crate::ImportError;
-use crate::material::{ColorEncoding, Material, Scattering, Surface};
+use crate::light::MAX_RADIANCE;
+use crate::material::{ColorEncoding, Material, Scattering, Surface, Texture};
 
 /// A material, and where its primitives find their texture coordinates.
 pub(super) struct Converted {
@@ -25,11 +26,17 @@ pub(super) struct Mapping {
     pub(super) transform: Affine2,
     /// Whether a texture is not to repeat.
     pub(super) ends: bool,
+    /// Whether there are textures.
+    pub(super) textured: bool,
+}
+
+impl Mapping {
+    /// Of a material without textures.
+    pub(super) const NONE: Self = Self { set: 0, transform: Affine2::IDENTITY, ends: false, textured: false };
 }
 
 const FACTOR: RangeInclusive<f32> = 0.0..=1.0;
-/// Above that products of radiances would leave `f32` in long paths.
-const RADIANCE: RangeInclusive<f32> = 0.0..=1e9;
+const RADIANCE: RangeInclusive<f32> = 0.0..=MAX_RADIANCE;
 /// glTF's ior 0 means total reflection; below and at 1 nothing would be refracted.
 const IOR: RangeInclusive<f32> = 1.0001..=100.0;
 /// glTF's index of refraction where the file gives none.
@@ -51,18 +58,25 @@ impl Materials<'_> {
         let pbr = material.pbr_metallic_roughness();
         let [r, g, b, alpha] = pbr.base_color_factor();
         let color = self.color(&place, [r, g, b], FACTOR)?;
-        let base = self.surface(color, pbr.base_color_texture())?;
         let strength = self.notes.within(&place, material.emissive_strength().unwrap_or(1.0), RADIANCE)?;
         let factor = self.color(&place, material.emissive_factor(), RADIANCE)?;
-        let emission = (factor * strength).min(Vec3::splat(*RADIANCE.end()));
+        let emission = (factor * strength).min(Vec3::splat(MAX_RADIANCE));
+        let scattering = self.scattering(&place, material)?;
+        // A black factor makes any picture black; its alpha still cuts holes.
+        let cut = material.alpha_mode() != AlphaMode::Opaque;
+        let base_texture = pbr.base_color_texture().filter(|_| cut || color != Vec3::ZERO);
+        let emission_texture = material.emissive_texture().filter(|_| emission != Vec3::ZERO);
+        let is_glass = matches!(scattering, Scattering::Glass { .. });
+        let scattering_texture = pbr.metallic_roughness_texture().filter(|_| !is_glass);
         let material_of = Material {
-            base,
-            scattering: self.scattering(&place, material)?,
-            emission: self.surface(emission, material.emissive_texture())?,
+            base: self.surface(color, base_texture.as_ref())?,
+            scattering,
+            emission: self.surface(emission, emission_texture.as_ref())?,
             double_sided: material.double_sided(),
             alpha_cutoff: self.cutoff(&place, material, alpha)?,
         };
-        Ok(Converted { material: material_of, mapping: self.mapping(&place, material)? })
+        let mapping = self.mapping(&place, [base_texture, scattering_texture, emission_texture])?;
+        Ok(Converted { material: material_of, mapping })
     }
 
     fn color(&mut self, place: &str, rgb: [f32; 3], range: RangeInclusive<f32>) -> Result<Vec3, ImportError> {
@@ -70,10 +84,9 @@ impl Materials<'_> {
         Ok(Vec3::new(r?, g?, b?))
     }
 
-    fn surface(&mut self, factor: Vec3, info: Option<Info<'_>>) -> Result<Surface, ImportError> {
-        // A black factor makes any picture black.
-        let Some(info) = info.filter(|_| factor != Vec3::ZERO) else { return Ok(Surface::Uniform(factor)) };
-        let texture = self.textures.get(&info, ColorEncoding::Srgb, self.notes, self.budget)?;
+    fn surface(&mut self, factor: Vec3, info: Option<&Info<'_>>) -> Result<Surface, ImportError> {
+        let Some(info) = info else { return Ok(Surface::Uniform(factor)) };
+        let texture = self.textures.get(info, ColorEncoding::Srgb, self.notes, self.budget)?;
         Ok(texture.map_or(Surface::Uniform(factor), |texture| Surface::Textured(texture, factor)))
     }
 
@@ -85,25 +98,44 @@ impl Materials<'_> {
             Some(transmission) => self.notes.within(place, transmission.transmission_factor(), FACTOR)?,
             None => 0.0,
         };
-        if transmission > 0.5 {
-            self.notes.count("rough glass is shown clear", usize::from(roughness > 0.0));
-            return self.glass(place, material);
-        }
-        self.notes.count("weakly transmissive materials are shown opaque", usize::from(transmission > 0.0));
-        let other_ior = material.ior().is_some_and(|ior| ior != DEFAULT_IOR);
-        self.notes
-            .count("opaque materials have an index of refraction, which is taken for 1.5", usize::from(other_ior));
         let texture = match pbr.metallic_roughness_texture() {
             Some(info) => self.textures.get(&info, ColorEncoding::Linear, self.notes, self.budget)?,
             None => None,
         };
+        if transmission > 0.0 && self.is_glass(transmission, metallic, texture.as_deref()) {
+            self.notes.count("rough glass is shown clear", usize::from(roughness > 0.0));
+            return self.glass(place, material);
+        }
+        let other_ior = material.ior().is_some_and(|ior| ior != DEFAULT_IOR);
+        self.notes
+            .count("opaque materials have an index of refraction, which is taken for 1.5", usize::from(other_ior));
         Ok(Scattering::MetallicRoughness { metallic, roughness, texture })
+    }
+
+    /// Whether more than half of the light passes: of a transmissive material only the part that is not metal transmits
+    /// (KHR_materials_transmission). A texture counts by its mean.
+    fn is_glass(&mut self, transmission: f32, metallic: f32, texture: Option<&Texture>) -> bool {
+        let metal = metallic * texture.map_or(1.0, |texture| texture.mean().z);
+        let is_glass = transmission * (1.0 - metal) > 0.5;
+        let mut note = |there: bool, what: &str| self.notes.count(what, usize::from(there));
+        note(
+            metal >= 1.0,
+            "transmissive materials are metals, which let nothing through (metallicFactor is 1 if not given)",
+        );
+        note(
+            metal > 0.0 && metal < 1.0,
+            "transmissive materials are metals in part; here they are clear glass or opaque",
+        );
+        note(metal < 1.0 && !is_glass, "weakly transmissive materials are shown opaque");
+        is_glass
     }
 
     fn glass(&mut self, place: &str, material: &gltf::Material<'_>) -> Result<Scattering, ImportError> {
         let ior = self.notes.within(place, material.ior().unwrap_or(DEFAULT_IOR), IOR)?;
         let textured = material.transmission().is_some_and(|t| t.transmission_texture().is_some());
         self.notes.count("textures of transmission are not used", usize::from(textured));
+        let uneven = material.volume().is_some_and(|volume| volume.thickness_texture().is_some());
+        self.notes.count("textures of thickness are not used", usize::from(uneven));
         let absorbs = material.volume().is_some_and(|v| v.attenuation_distance().is_finite());
         self.notes.count("solid glass absorbs light on its way, which is not used", usize::from(absorbs));
         let thin = material.volume().is_none_or(|volume| volume.thickness_factor() <= 0.0);
@@ -127,14 +159,12 @@ impl Materials<'_> {
     }
 
     /// The texture coordinates of the first texture that shows; the others are noted if theirs differ.
-    fn mapping(&mut self, place: &str, material: &gltf::Material<'_>) -> Result<Mapping, ImportError> {
-        let pbr = material.pbr_metallic_roughness();
-        let infos = [pbr.base_color_texture(), pbr.metallic_roughness_texture(), material.emissive_texture()];
+    fn mapping(&mut self, place: &str, infos: [Option<Info<'_>>; 3]) -> Result<Mapping, ImportError> {
         let mut all = Vec::new();
         for info in infos.into_iter().flatten() {
             all.push(self.mapping_of(place, &info)?);
         }
-        let first = all.first().copied().unwrap_or(Mapping { set: 0, transform: Affine2::IDENTITY, ends: false });
+        let first = all.first().copied().unwrap_or(Mapping::NONE);
         let others = all.iter().filter(|m| (m.set, m.transform) != (first.set, first.transform)).count();
         self.notes
             .count("textures use the texture coordinates of their material's first one instead of their own", others);
@@ -146,7 +176,7 @@ impl Materials<'_> {
     fn mapping_of(&mut self, place: &str, info: &Info<'_>) -> Result<Mapping, ImportError> {
         let ends = !repeats(info);
         let Some(given) = info.texture_transform() else {
-            return Ok(Mapping { set: info.tex_coord(), transform: Affine2::IDENTITY, ends });
+            return Ok(Mapping { set: info.tex_coord(), ends, textured: true, ..Mapping::NONE });
         };
         let mut finite = |value: f32| self.notes.within(place, value, -1e6..=1e6);
         let (scale, offset) = (given.scale().map(&mut finite), given.offset().map(&mut finite));
@@ -155,7 +185,7 @@ impl Materials<'_> {
         let rotation = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
         let matrix = rotation * Mat2::from_diagonal(Vec2::new(sx?, sy?));
         let transform = Affine2::from_mat2_translation(matrix, Vec2::new(ox?, oy?));
-        Ok(Mapping { set: given.tex_coord().unwrap_or(info.tex_coord()), transform, ends })
+        Ok(Mapping { set: given.tex_coord().unwrap_or(info.tex_coord()), transform, ends, textured: true })
     }
 
     fn note_unused(&mut self, material: &gltf::Material<'_>) {

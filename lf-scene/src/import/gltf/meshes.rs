@@ -6,6 +6,7 @@ use gltf::{Primitive, Semantic};
 use lf_math::normalized;
 
 use super::super::budget::Budget;
+use super::super::flat_normal;
 use super::super::notes::Notes;
 use super::accessors::{Accessors, is_plain};
 use super::container::Container;
@@ -123,6 +124,7 @@ impl Vertices {
         for normal in &mut normals {
             *normal = turn * *normal;
         }
+        notes.normals(&normals);
         let uvs = primitive.get(&Semantic::TexCoords(mapping.set));
         let mut uvs = uvs.map_or(Ok(vec![]), |a| accessors.coordinates(&a))?;
         for uv in &mut uvs {
@@ -146,8 +148,7 @@ impl Vertices {
         };
         let [a, b, c] = indices.map(corner);
         let corners = [a?, b?, c?];
-        let [a, b, c] = corners.map(Vec3::as_dvec3);
-        let Some(flat) = (b - a).cross(c - a).try_normalize() else { return Ok(None) };
+        let Some(flat) = flat_normal(corners) else { return Ok(None) };
         let vertex = |(index, position): (u32, Vec3)| {
             let normal = self.normals.get(index as usize).copied().and_then(normalized);
             let uv = self.uvs.get(index as usize).copied().unwrap_or(Vec2::ZERO);
@@ -159,8 +160,11 @@ impl Vertices {
     }
 }
 
-/// Notes texture coordinates that mean something else to a texture that repeats, and mends those that mean nothing.
+/// Notes texture coordinates that are missing or mean something else to a texture that repeats, and mends those that mean
+/// nothing.
 fn note_coordinates(mapping: &Mapping, uvs: &mut [Vec2], notes: &mut Notes) {
+    let missing = mapping.textured && uvs.is_empty();
+    notes.count("primitives lack the texture coordinates that their material uses, taken for 0", usize::from(missing));
     for uv in uvs.iter_mut().filter(|uv| !uv.is_finite()) {
         *uv = Vec2::ZERO;
         notes.add("texture coordinates are not finite and taken for 0");

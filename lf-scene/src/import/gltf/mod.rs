@@ -21,7 +21,7 @@ mod uri;
 use std::collections::{HashMap, VecDeque};
 use std::path::Path;
 
-use glam::{Affine2, Mat4, Vec3};
+use glam::{Mat4, Vec3};
 use gltf::Document;
 
 use self::container::{Container, EXTENSIONS};
@@ -40,8 +40,9 @@ use crate::{ImportError, SceneError};
 ///
 /// Used are triangles with node transforms, metallic-roughness materials with their textures, emission, alpha masks,
 /// transmission as clear glass, all perspective cameras, punctual lights, and a sun named in
-/// `asset.extras.emitters[].sun_direction_world`. A scene in which nothing shines gets a lamp at its camera. What else the
-/// file holds is counted in the warnings. Candela and lux become watts at 683 lm/W; emission is taken for W/(m²·sr) as it is.
+/// `asset.extras.emitters[].sun_direction_world`. Without an environment there is a blue-white sky, and a scene in which
+/// nothing shines gets a lamp at its camera; the warnings say so. What else the file holds is counted there. Candela and lux
+/// become watts at 683 lm/W; emission is taken for W/(m²·sr) as it is.
 ///
 /// Files that the scene names must lie in its folder or below.
 ///
@@ -108,7 +109,7 @@ fn materials(
         mappings.push(converted.mapping);
     }
     builder.material(Material::diffuse(Vec3::splat(0.8)));
-    mappings.push(Mapping { set: 0, transform: Affine2::IDENTITY, ends: false });
+    mappings.push(Mapping::NONE);
     Ok((builder, mappings))
 }
 
