@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::error::CaptureError;
+use crate::identity;
 use crate::plan::{Options, Plan};
 use crate::shard::Shard;
 
@@ -18,6 +19,8 @@ use crate::shard::Shard;
 pub(crate) struct Header {
     /// The version of this crate.
     program: String,
+    /// The kind of machine; tiles of two kinds may differ in their last bits.
+    machine: String,
     /// What the scene looks like.
     scene: String,
     shard: u32,
@@ -68,6 +71,7 @@ impl Header {
         let PackOptions { quality, rdo } = options.pack;
         Self {
             program: concat!("lf-capture ", env!("CARGO_PKG_VERSION")).to_owned(),
+            machine: identity::of_machine(),
             scene: format!("{:016x}", plan.scene),
             shard: shard.number(),
             shards: shard.count(),

@@ -1,4 +1,4 @@
-//! What a scene looks like, as a number.
+//! What a scene looks like and how a machine reckons, as numbers.
 
 use glam::{Vec2, Vec3};
 use lf_math::LightFieldGeometry;
@@ -6,8 +6,25 @@ use lf_scene::Tracer;
 use rayon::prelude::*;
 use xxhash_rust::xxh64::Xxh64;
 
-/// Rays traced for one slab.
+/// Rays traced for one slab, and numbers that functions are tried at.
 const PROBES: u32 = 4096;
+
+/// The kind of machine, and the xxHash64 of what its mathematics library makes of some thousand numbers.
+///
+/// Sums, products and roots have the same bits everywhere. Sines, powers and the like are the system's, in the last bit
+/// each library's own, and scenes and samples are made of them.
+pub(crate) fn of_machine() -> String {
+    let mut hash = Xxh64::new(0);
+    for n in 0..PROBES {
+        let double = 8.0 * (f64::from(n) * 2f64.sqrt()).fract();
+        let x = double as f32;
+        hash_numbers(&mut hash, &[x.sin(), x.cos(), x.tan(), x.exp(), x.ln(), x.powf(2.4), x.powi(5)]);
+        hash_numbers(&mut hash, &[(x / 8.0).acos(), (x / 8.0).asin(), x.atan2(3.0), x.hypot(3.0)]);
+        let doubles = [double.sin(), double.cos(), double.powf(2.4), double.powi(5), double.exp(), double.ln()];
+        doubles.iter().for_each(|number| hash.update(&number.to_bits().to_le_bytes()));
+    }
+    format!("{} {}, arithmetic {:016x}", std::env::consts::ARCH, std::env::consts::OS, hash.digest())
+}
 
 /// The xxHash64 of all triangles and of the radiance along some thousand rays of each slab: whatever the scene is made of, what
 /// changes the look of it changes the number, unless none of the rays meets it.

@@ -4,7 +4,8 @@
 //! has put the focal planes, so the windows of all images are fixed. The unit of work is a tile of the file. [`capture`]
 //! traces its cameras' windows on all threads of the current rayon pool, encodes and packs it, and appends it to a
 //! [`Journal`]; a killed process loses the tiles that it was working on and no other. [`write_files`] makes the `.lfslab` file of
-//! the journal, or of the journals of several [`Shard`]s, and the bytes are always the same.
+//! the journal, or of the journals of several [`Shard`]s, and the bytes are always the same, on machines of one kind: where sines and
+//! powers have other last bits, a journal is refused.
 //!
 //! Texels that no ray through the cell asks for are not traced ([`NeededTexels`](lf_math::NeededTexels)). Where they lie within
 //! a window they repeat a traced neighbour, which costs next to nothing once encoded.

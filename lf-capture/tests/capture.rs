@@ -9,7 +9,7 @@ use lf_capture::{CaptureError, Journal, Options, Outcome, Plan, Progress, Shard,
 use lf_compress::{PackOptions, PackedLightField};
 use lf_format::{Container, Limits, Metadata, TexelEncoding};
 use lf_ibr::{Environment as _, SlabField};
-use lf_math::{Cell, Face, LightFieldGeometry, PlanePlacement, Ray};
+use lf_math::{Cell, Face, LightFieldGeometry, NeededTexels, PlanePlacement, Ray, Slab};
 use lf_scene::{Environment, Lighting, Material, SceneBuilder, TexelSampler, Tracer, capture_slabs, museum};
 use tempfile::TempDir;
 
@@ -60,6 +60,18 @@ fn rays(cell: &Cell, count: u32) -> impl Iterator<Item = Ray> {
     })
 }
 
+/// How many texels rays through the cell ask for, counted one by one, whatever the windows are.
+fn needed_texels(field: &LightFieldGeometry) -> u64 {
+    let of_slab = |slab: &Slab| {
+        let needed = NeededTexels::of_cell(slab, field.cell());
+        let pairs = |[a, b]: [u32; 2]| (0..b).flat_map(move |j| (0..a).map(move |i| [i, j]));
+        let texels =
+            pairs(slab.cameras()).flat_map(|camera| pairs(slab.resolution()).map(move |texel| (camera, texel)));
+        texels.filter(|(camera, texel)| needed.contains(*camera, *texel)).count() as u64
+    };
+    field.slabs().iter().map(of_slab).sum()
+}
+
 #[test]
 fn every_ray_finds_the_bits_of_a_capture_that_traces_everything() {
     let tracer = Tracer::new(museum::scene());
@@ -85,6 +97,7 @@ fn every_ray_finds_the_bits_of_a_capture_that_traces_everything() {
         let all = capture_slabs(&tracer, &field, 1, &|_| ()).unwrap();
         assert_eq!(&all.geometry, stored.geometry());
         assert!(totals.traced < all.rays, "{placement:?}: all {} texels are traced", all.rays);
+        assert_eq!(totals.traced, needed_texels(stored.geometry()), "{placement:?}");
         let all = SlabField::new(all.geometry, all.texels).unwrap();
         for ray in rays(&cell, 150_000).filter(|ray| ray.direction != Vec3::ZERO) {
             assert_eq!(found.look_up(&ray), all.look_up(&ray), "{placement:?} {ray:?}");
@@ -195,6 +208,13 @@ fn shards_have_about_as_much_to_do() {
     assert!(10 * most <= 11 * least, "{work:?}");
 }
 
+/// Changes the header of a journal, and its checksum with it.
+fn write_header(path: &Path, json: &str) {
+    let checksum = xxhash_rust::xxh64::xxh64(json.as_bytes(), 0).to_le_bytes();
+    let bytes = [b"LFSPART1", &(json.len() as u32).to_le_bytes()[..], &checksum, json.as_bytes()].concat();
+    fs::write(path, bytes).unwrap();
+}
+
 /// Headers whose checksum is right and whose numbers are not.
 #[test]
 fn headers_are_not_believed() {
@@ -212,12 +232,26 @@ fn headers_are_not_believed() {
     ] {
         let json = json.replacen(from, to, 1);
         assert!(json.contains(to), "{from}");
-        let checksum = xxhash_rust::xxh64::xxh64(json.as_bytes(), 0).to_le_bytes();
-        let bytes = [b"LFSPART1", &(json.len() as u32).to_le_bytes()[..], &checksum, json.as_bytes()].concat();
-        fs::write(&path, bytes).unwrap();
+        write_header(&path, &json);
         let error = Journal::open(&path).unwrap_err();
         assert!(matches!(error, CaptureError::NotAJournal { .. }), "{to}: {error}");
     }
+}
+
+/// Sines and powers are those of the system's library: what two of them made may differ in its last bits.
+#[test]
+fn a_journal_of_another_kind_of_machine_is_refused() {
+    let (tracer, folder) = (Tracer::new(museum::scene()), TempDir::new().unwrap());
+    let (plan, path) = (plan(&tracer), folder.path().join("2.part"));
+    drop(Journal::create(&path, &plan, shard(2)).unwrap());
+    let json = String::from_utf8(fs::read(&path).unwrap()[20..].to_vec()).unwrap();
+    write_header(&path, &json.replacen("arithmetic ", "arithmetic f", 1));
+    let refused = Journal::resume(&path, &plan, shard(2)).unwrap_err();
+    assert!(matches!(refused, CaptureError::Foreign { .. }), "{refused}");
+    let first = Journal::create(&folder.path().join("1.part"), &plan, shard(1)).unwrap();
+    let mut journals = [first, Journal::open(&path).unwrap()];
+    let error = write_files(&mut journals, &folder.path().join("x.lfslab"), None).unwrap_err().to_string();
+    assert!(error.contains("2.part belongs to another capture: machine is "), "{error}");
 }
 
 fn shard(number: u32) -> Shard {

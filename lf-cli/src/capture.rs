@@ -5,17 +5,18 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
-use lf_capture::{CaptureError, Journal, Options, Outcome, Plan, Progress, Shard, Totals, capture, write_files};
+use lf_capture::{CaptureError, Journal, Options, Outcome, Plan, Shard, Totals, capture, write_files};
 use lf_format::Metadata;
 use lf_math::LightFieldGeometry;
 
 use crate::args::Sampling;
 use crate::capture_args::{CaptureArgs, MergeArgs};
-use crate::output::{capture_bar, check_writable, megabytes, print};
+use crate::output::{check_distinct, check_writable, megabytes, print};
+use crate::progress::{CaptureProgress, rate};
 use crate::sources::Source;
 
 /// A capture was stopped by the user, and can be resumed.
@@ -41,20 +42,24 @@ pub(crate) struct Captured {
 }
 
 pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
-    for out in [Some(&args.out), args.depth.as_ref()].into_iter().flatten() {
-        check_writable(out)?;
-    }
     let shard = args.shard.unwrap_or(Shard::WHOLE);
     let path = journal_path(&args.out, shard);
-    make_room(args, &path)?;
+    check_outputs(&args.out, args.depth.as_deref(), &[("the journal".to_owned(), &path)])?;
+    refuse_to_forget(args, &path)?;
     if let Some(threads) = args.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().context("--threads")?;
     }
     let stop = stop_on_signal()?;
     let source = Source::load(&args.scene)?;
     let plan = survey(&source, &sampling(args), options(args))?;
+    if args.restart {
+        // Not before the new capture is sure to begin.
+        Journal::discard(&path)?;
+    }
     let mut journal = begin(&path, &plan, shard)?;
-    trace(&source, &mut journal, &stop)?;
+    if trace(&source, &mut journal, &stop).with_context(|| kept(&journal))? == Outcome::Stopped {
+        return Err(Stopped(kept(&journal)).into());
+    }
     if shard == Shard::WHOLE {
         let bytes = finish(journal, &args.out, args.depth.as_deref())?;
         return print(&format!("{}: {}", args.out.display(), megabytes(bytes)));
@@ -64,7 +69,8 @@ pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
 }
 
 pub(crate) fn run_merge(args: &MergeArgs) -> Result<()> {
-    check_writable(&args.out)?;
+    let given = (1..).zip(&args.journals).map(|(number, path)| (format!("journal {number}"), path.as_path()));
+    check_outputs(&args.out, args.depth.as_deref(), &given.collect::<Vec<_>>())?;
     let mut journals = args.journals.iter().map(|path| Journal::open(path)).collect::<Result<Vec<_>, _>>()?;
     let merged = write_files(&mut journals, &args.out, args.depth.as_deref());
     let totals = merged.map_err(|error| {
@@ -79,11 +85,12 @@ pub(crate) fn run_merge(args: &MergeArgs) -> Result<()> {
     print(&format!("{}: {}", args.out.display(), megabytes(std::fs::metadata(&args.out)?.len())))
 }
 
-/// Captures into a file in one go, whatever an earlier run left.
+/// Captures into a file in one go, whatever an earlier such run left. Its journal has another name than that of `lfslab capture`,
+/// which may be hours of work.
 pub(crate) fn capture_to(source: &Source, sampling: &Sampling, options: Options, out: &Path) -> Result<Captured> {
     let start = Instant::now();
     let plan = survey(source, sampling, options)?;
-    let path = journal_path(out, Shard::WHOLE);
+    let path = with_suffix(out, ".demo.part");
     Journal::discard(&path)?;
     let mut journal = begin(&path, &plan, Shard::WHOLE)?;
     trace(source, &mut journal, &AtomicBool::new(false))?;
@@ -110,21 +117,30 @@ fn options(args: &CaptureArgs) -> Options {
 
 /// The journal of a file: beside it.
 fn journal_path(out: &Path, shard: Shard) -> PathBuf {
-    let mut name = OsString::from(out);
-    name.push(if shard == Shard::WHOLE {
-        ".part".to_owned()
-    } else {
-        format!(".{}-of-{}.part", shard.number(), shard.count())
-    });
+    if shard == Shard::WHOLE {
+        return with_suffix(out, ".part");
+    }
+    with_suffix(out, &format!(".{}-of-{}.part", shard.number(), shard.count()))
+}
+
+fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = OsString::from(path);
+    name.push(suffix);
     name.into()
 }
 
-/// Sees to it that no journal is in the way, unless it is to be resumed.
-fn make_room(args: &CaptureArgs, path: &Path) -> Result<()> {
-    if args.restart {
-        return Ok(Journal::discard(path)?);
-    }
-    if !args.resume && path.exists() {
+/// Refuses files that cannot be written, or would be written over each other or over a journal.
+fn check_outputs(out: &Path, depth: Option<&Path>, journals: &[(String, &Path)]) -> Result<()> {
+    let named = [("--out", Some(out)), ("--depth", depth)];
+    let outputs = named.into_iter().filter_map(|(name, path)| Some((name.to_owned(), path?)));
+    let outputs: Vec<(String, &Path)> = outputs.collect();
+    outputs.iter().try_for_each(|(_, path)| check_writable(path))?;
+    check_distinct(&[journals, &outputs].concat())
+}
+
+/// Refuses to begin where a journal lies, unless it was said what is to become of it.
+fn refuse_to_forget(args: &CaptureArgs, path: &Path) -> Result<()> {
+    if !args.resume && !args.restart && path.exists() {
         bail!("{} holds an unfinished capture: --resume goes on with it, --restart begins anew", path.display());
     }
     Ok(())
@@ -177,26 +193,23 @@ fn begin(path: &Path, plan: &Plan, shard: Shard) -> Result<Journal> {
     Ok(journal)
 }
 
-/// Captures what a journal lacks, with a progress bar.
-fn trace(source: &Source, journal: &mut Journal, stop: &AtomicBool) -> Result<()> {
-    let bar = capture_bar();
-    let (start, rays) = (Instant::now(), AtomicU64::new(0));
-    let progress = |progress: Progress| {
-        let all = rays.fetch_max(progress.rays, Ordering::Relaxed).max(progress.rays);
-        bar.set_length(progress.all_texels);
-        bar.set_position(progress.texels);
-        bar.set_prefix(format!("{:.2}", rate(all, start.elapsed())));
-    };
-    let outcome = capture(&source.tracer, journal, &progress, stop);
-    bar.finish_and_clear();
-    if outcome? == Outcome::Stopped {
-        let (path, tiles) = (journal.path().display(), journal.totals().tiles);
-        let all = tiles + journal.missing().len();
-        let message = format!("stopped: {tiles} of {all} tiles are in {path}; the same command with --resume goes on");
-        return Err(Stopped(message).into());
+/// Captures what a journal lacks, telling how far it has come.
+fn trace(source: &Source, journal: &mut Journal, stop: &AtomicBool) -> Result<Outcome> {
+    let progress = CaptureProgress::new();
+    let outcome = capture(&source.tracer, journal, &|now| progress.report(now), stop);
+    let (rays, elapsed) = progress.finish();
+    let outcome = outcome?;
+    if outcome == Outcome::Finished {
+        tell(journal, rays, elapsed);
     }
-    tell(journal, rays.into_inner(), start.elapsed());
-    Ok(())
+    Ok(outcome)
+}
+
+/// What is left of a capture that ended too soon.
+fn kept(journal: &Journal) -> String {
+    let (path, tiles) = (journal.path().display(), journal.totals().tiles);
+    let all = tiles + journal.missing().len();
+    format!("stopped: {tiles} of {all} tiles are in {path}; the same command with --resume goes on")
 }
 
 /// The last line of a capture: this run's rays, and what is in the journal.
@@ -221,11 +234,6 @@ fn tell(journal: &Journal, rays: u64, elapsed: Duration) {
 fn quality(totals: &Totals) -> String {
     let psnr = totals.psnr();
     if psnr.is_finite() { format!("stored at {psnr:.2} dB") } else { "lossless".to_owned() }
-}
-
-/// Million rays a second.
-fn rate(rays: u64, elapsed: Duration) -> f64 {
-    rays as f64 / 1e6 / elapsed.as_secs_f64().max(1e-9)
 }
 
 /// Makes the files of a finished journal, which is removed; the length of the first.

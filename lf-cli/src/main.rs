@@ -20,6 +20,7 @@ mod output;
 mod pictures;
 mod plan;
 mod plan_args;
+mod progress;
 mod render;
 mod scene_args;
 mod sources;

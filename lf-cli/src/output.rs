@@ -1,7 +1,7 @@
 //! Files, lines and progress.
 
 use std::io::{Cursor, ErrorKind, Write, stdout};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 use glam::Vec3;
@@ -22,7 +22,7 @@ pub(crate) fn print(lines: &str) -> Result<()> {
 
 /// Refuses an output path before long work: its folder must exist and it must not be a folder.
 pub(crate) fn check_writable(path: &Path) -> Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    let folder = folder_of(path);
     if !folder.is_dir() {
         bail!("cannot write {}: the folder {} does not exist", path.display(), folder.display());
     }
@@ -30,6 +30,31 @@ pub(crate) fn check_writable(path: &Path) -> Result<()> {
         bail!("cannot write {}: it is a folder", path.display());
     }
     Ok(())
+}
+
+/// Refuses to use one file for two purposes, each given by its name and path, however the path is spelled.
+pub(crate) fn check_distinct(files: &[(String, &Path)]) -> Result<()> {
+    let found: Vec<PathBuf> = files.iter().map(|(_, path)| canonical(path)).collect();
+    for (i, (name, path)) in files.iter().enumerate() {
+        if let Some(other) = found[..i].iter().position(|other| *other == found[i]) {
+            let (first, path) = (&files[other].0, path.display());
+            bail!("{path} is there twice, as {first} and as {name}: each must be a file of its own");
+        }
+    }
+    Ok(())
+}
+
+/// The one spelling of a path, of a file that may not be there yet.
+fn canonical(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| {
+        let folder = folder_of(path);
+        let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        folder.join(path.file_name().unwrap_or_default())
+    })
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."))
 }
 
 /// Writes a file whole or not at all.
@@ -75,13 +100,6 @@ pub(crate) fn progress_bar(length: u64, what: &str, unit: &str) -> ProgressBar {
     let template = format!("{{msg:8}} {{wide_bar}} {{pos}}/{{len}} {unit}, {{per_sec}}, {{eta}} left");
     let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(length).with_style(style).with_message(what.to_owned())
-}
-
-/// A bar for a capture: its prefix is the rate in million rays a second.
-pub(crate) fn capture_bar() -> ProgressBar {
-    let template = "capture  {wide_bar} {percent:>3} %, {prefix} million rays/s, {eta} left";
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(0).with_style(style)
 }
 
 /// A size in MiB for people.

@@ -25,6 +25,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<()> {
     let slabs = geometry.slabs().iter().filter(|slab| wanted.is_empty() || wanted.contains(&slab.face())).copied();
     let plan = Plan::new(args.world, LightFieldGeometry::new(cell, slabs.collect())?)?;
     refuse_other_pictures(&plan, &args.out)?;
+    warn_beyond_faces(&plan);
     plan.write(&args.out)?;
     let count = plan.camera_count();
     let [pictures, readme] = [Plan::PICTURES, "README.md"].map(|name| args.out.join(name).display().to_string());
@@ -46,6 +47,17 @@ fn refuse_other_pictures(plan: &Plan, folder: &Path) -> Result<()> {
         bail!("{} holds pictures of another plan; remove them or choose another folder", pictures.display());
     }
     Ok(())
+}
+
+/// Cameras outside the cell do not see what lies between it and them, which a reflection would show.
+fn warn_beyond_faces(plan: &Plan) {
+    let beyond = plan.beyond_face();
+    if beyond > 0.0 {
+        eprintln!(
+            "warning: the cameras stand {beyond} m outside the cell's faces; what lies between is missed (--planes faces, or less \
+             than half the edge)"
+        );
+    }
 }
 
 /// The face of this project's world that a face of another world is.

@@ -151,8 +151,14 @@ fn bad_scenes_and_reflectors_are_named() {
 fn the_demo_leaves_all_its_files_and_nothing_else() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("out");
+    // What a demo was killed over, and a capture that somebody will go on with.
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("museum.lfslab.demo.part"), "rubbish").unwrap();
+    fs::write(out.join("museum.lfslab.part"), "hours of work").unwrap();
     let output = lfslab(&["demo", "--out", &out.to_string_lossy(), "--size", "64", "--cpu"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(fs::read(out.join("museum.lfslab.part")).unwrap(), b"hours of work");
+    fs::remove_file(out.join("museum.lfslab.part")).unwrap();
     assert!(text(&output.stderr).contains("CPU, as asked"));
     let mut names: Vec<_> =
         fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();

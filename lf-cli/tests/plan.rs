@@ -206,6 +206,23 @@ fn a_plan_is_as_its_schema_says() {
 }
 
 #[test]
+fn cameras_beyond_the_faces_are_warned_of() {
+    let folder = TempDir::new().unwrap();
+    let planned = |planes: &str| {
+        let out = text(folder.path());
+        let log = succeeds(&["plan", "--cell", "0,0,0,0.6", "--cameras", "2", "--planes", planes, "--out", &out]);
+        (log, fs::read_to_string(folder.path().join("README.md")).unwrap())
+    };
+    for within in ["faces", "center", "0.3"] {
+        let (log, readme) = planned(within);
+        assert!(!log.contains("warning") && readme.contains("it is that of the cell's face;"), "{within}: {log}");
+    }
+    let (log, readme) = planned("0.8");
+    assert!(log.contains("warning: the cameras stand 0.5 m outside the cell's faces"), "{log}");
+    assert!(readme.contains("up to 0.5 outside") && !readme.contains("it is that of the cell's face;"), "{readme}");
+}
+
+#[test]
 fn some_faces_only() {
     let folder = TempDir::new().unwrap();
     // Up is +Z in Blender and +Y here.

@@ -12,6 +12,7 @@
 //! [`Plan::near_clip`] has the distance of the cell's face, 0 for camera planes on the faces and half a cell for planes through
 //! the centre. What stands beside the cell and nearer than that is missed. If the cell is empty and no camera stands in
 //! anything, a smaller distance is as right for rays that leave through the face and better for those that leave through a side.
+//! Cameras outside the face cannot look back: what stands between it and them is missed, too ([`Plan::beyond_face`]).
 
 mod file;
 mod import;
@@ -165,6 +166,19 @@ impl Plan {
         (self.geometry.cell().half_extent()[face.axis()] - face.sign() * slab.plane()).max(0.0)
     }
 
+    /// How far the cameras stand outside the cell's faces, metres, at most; 0 if they stand on them or within. Nothing that lies
+    /// between a face and its cameras is seen.
+    #[must_use]
+    pub fn beyond_face(&self) -> f32 {
+        let half_extent = self.geometry.cell().half_extent();
+        let beyond = self.geometry.slabs().iter().map(|slab| {
+            let face = half_extent[slab.face().axis()];
+            // What rounding makes of a plane on the face is no distance.
+            Some(slab.face().sign() * slab.plane() - face).filter(|beyond| *beyond > 1e-5 * face)
+        });
+        beyond.flatten().fold(0.0, f32::max)
+    }
+
     fn world_from_lfslab(&self) -> DMat3 {
         self.world.world_from_lfslab()
     }
@@ -231,6 +245,14 @@ mod tests {
         for (placement, distance) in [(PlanePlacement::CellFaces, 0.0), (PlanePlacement::CellCenter, 0.25)] {
             let plan = Plan::new(World::Gltf, geometry(placement)).unwrap();
             assert!((0..6).all(|slab| plan.near_clip(slab) == distance));
+        }
+    }
+
+    #[test]
+    fn cameras_beyond_the_face_are_told_from_those_on_it() {
+        for (offset, distance) in [(0.25, 0.0), (0.25 + 1e-7, 0.0), (-1.0, 0.0), (0.75, 0.5)] {
+            let plan = Plan::new(World::Gltf, geometry(PlanePlacement::Offset(offset))).unwrap();
+            assert_eq!(plan.beyond_face(), distance, "{offset}");
         }
     }
 

@@ -81,9 +81,25 @@ impl Plan {
             ("{near}", if near == far { format!("{near}") } else { format!("{near} to {far}") }),
             ("{first}", self.picture_name(1, "png")),
             ("{last}", self.picture_name(self.camera_count(), "png")),
+            ("{start}", self.where_rays_start()),
             ("{world}", world.to_owned()),
         ];
         values.into_iter().fold(text.to_owned(), |text, (name, value)| text.replace(name, &value))
+    }
+
+    /// What the README says of the plane that rays start on.
+    fn where_rays_start(&self) -> String {
+        let beyond = self.beyond_face();
+        if beyond > 0.0 {
+            return format!(
+                "Here it is that of the cameras, up to {beyond} outside the cell's faces: what stands between\n  \
+                a face and its cameras is missed, and what stands beside the cell below them. Nothing in `plan.json` mends that;\n  \
+                plan again with the cameras on the faces or within."
+            );
+        }
+        "With this near plane it is that of the cell's face; what stands beside the cell and below that plane is missed.\n  \
+            If the cell is empty and no camera stands in anything, you may lower it to 0 in `plan.json`; then less is missed."
+            .to_owned()
     }
 }
 
@@ -105,6 +121,25 @@ mod tests {
         }
         let ini = fs::read_to_string(folder.path().join("lfslab.ini")).unwrap();
         assert!(ini.contains("Final_Frame=54\n") && ini.contains("Width=8\n"), "{ini}");
+    }
+
+    /// Beyond the faces the near plane is 0, and no longer that of a face.
+    #[test]
+    fn where_rays_start_is_said_as_it_is() {
+        let cell = Cell::cube(DVec3::ZERO, 1.0).unwrap();
+        let readme = |placement| {
+            let plan = Plan::new(World::Gltf, LightFieldGeometry::around(cell, placement, 3, 8).unwrap()).unwrap();
+            plan.fill(include_str!("programs/README.md"))
+        };
+        for placement in [PlanePlacement::CellCenter, PlanePlacement::CellFaces, PlanePlacement::Offset(-0.75)] {
+            assert!(readme(placement).contains("With this near plane it is that of the cell's face;"), "{placement:?}");
+        }
+        let beyond = readme(PlanePlacement::Offset(0.75));
+        assert!(
+            beyond.contains("`near_clip`: 0 here") && beyond.contains("up to 0.25 outside the cell's faces"),
+            "{beyond}"
+        );
+        assert!(!beyond.contains("With this near plane"), "{beyond}");
     }
 
     #[test]
