@@ -4,6 +4,7 @@
 //! * [`volume`]: the place of every camera image in one volume texture.
 //! * [`PackedLightField`]: a light field as encoded tiles, one per volume slice: made from texels or read from a
 //!   container, uploaded to a GPU as it is or decoded again.
+//! * [`planes`]: images of inverse depth, two planes a block.
 //! * [`tile`]: lossless packing of BC1 tiles for the file, and blocks that pack better.
 //!
 //! Tiles of other encodings are packed by zstd, one frame each. Light fields too large for memory are made tile by tile:
@@ -17,6 +18,7 @@ mod error;
 mod file;
 mod packed;
 mod picture;
+pub mod planes;
 mod recut;
 pub mod tile;
 mod validate;

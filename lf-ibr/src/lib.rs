@@ -13,14 +13,23 @@
 
 mod bilinear;
 mod cube;
+mod distance;
 mod frame;
 mod gbuffer;
+mod guide;
+mod guided;
+mod march;
+mod proxy;
 mod slabs;
 mod texel;
 
 pub use cube::CubeField;
+pub use distance::{DistanceField, ProbeField, Search};
 pub use frame::{Environment, reflect_frame};
 pub use gbuffer::{Fragment, GBuffer};
+pub use guide::DepthGuide;
+pub use guided::GuidedField;
+pub use proxy::{BoxCube, SphereCube};
 pub use slabs::SlabField;
 pub use texel::Texel;
 

@@ -1,7 +1,7 @@
 //! Cube maps of a scene: what is seen from a point in all directions.
 
 use glam::{Vec2, Vec3};
-use lf_math::{Cell, CubeCoord, CubeMap, Face, GeometryError, Image, cube_direction};
+use lf_math::{Cell, CubeCoord, CubeMap, DistanceCube, Face, GeometryError, Image, cube_direction};
 use rayon::prelude::*;
 
 use crate::capture::{opaque, subsamples};
@@ -46,6 +46,35 @@ pub fn capture_cube(tracer: &Tracer, cell: &Cell, size: u32, grid: u32) -> Resul
     CubeMap::new(faces.map(|face| face.map(|texel: Traced| opaque(texel.radiance))))
 }
 
+/// A distance cube taken at a point of cell space: a picture of `size × size` texels a face, each the mean of `grid × grid` rays, and
+/// inverse depths of `depth_size × depth_size`.
+///
+/// # Errors
+/// Both sizes must be at least 1, the point finite and not on a surface.
+pub fn capture_distance_cube(
+    tracer: &Tracer,
+    cell: &Cell,
+    point: Vec3,
+    [size, depth_size]: [u32; 2],
+    grid: u32,
+) -> Result<DistanceCube, GeometryError> {
+    let world = cell.world_from_cell(point).as_vec3();
+    let seen = trace_cube(tracer, world, size, grid)?;
+    let radiance = CubeMap::new(seen.map(|face| face.map(|texel: Traced| opaque(texel.radiance))))?;
+    let depths = Face::ALL.map(|face| {
+        let inverse = |index: u32| {
+            let middle = Vec2::new((index % depth_size) as f32, (index / depth_size) as f32) + 0.5;
+            // The direction's component along the face's axis is ±1: its length is the depth of what is met.
+            let direction = cube_direction(CubeCoord { face, uv: middle / depth_size as f32 });
+            tracer.distance(world, direction).map_or(0.0, f32::recip)
+        };
+        let texels = (0..depth_size.saturating_mul(depth_size)).into_par_iter().map(inverse).collect();
+        Image::new(depth_size, depth_size, texels)
+    });
+    let [a, b, c, d, e, f] = depths;
+    DistanceCube::new(point, radiance, [a?, b?, c?, d?, e?, f?])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,6 +114,21 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Closed form: the walls as seen from a point off the cell's centre.
+    #[test]
+    fn distance_cubes_know_where_the_walls_are() {
+        let cell = Cell::cube(DVec3::ONE, 1.0).unwrap();
+        let point = Vec3::new(0.3, -0.2, 0.1);
+        let cube = capture_distance_cube(&room(), &cell, point, [5, 9], 1).unwrap();
+        assert_eq!((cube.radiance().size(), cube.depth_size(), cube.position()), (5, 9, point));
+        for face in Face::ALL {
+            let depth = 3.0 - face.sign() * point[face.axis()];
+            let straight = face.vector(Vec2::ZERO, face.sign() * depth);
+            assert!((cube.relative_depth(straight) - 1.0).abs() < 1e-5);
+        }
+        assert!(capture_distance_cube(&room(), &cell, point, [5, 0], 1).is_err());
     }
 
     #[test]
