@@ -14,6 +14,7 @@ use lf_math::PlanePlacement;
 
 use crate::capture_args::{CaptureArgs, CubemapArgs, MergeArgs};
 use crate::exchange_args::{ExportArgs, ImportArgs};
+use crate::methods_args::MethodsArgs;
 use crate::plan_args::PlanArgs;
 use crate::scene_args::{LightArgs, SceneArgs, ViewArgs};
 
@@ -41,6 +42,8 @@ pub(crate) enum Command {
     Plan(PlanArgs),
     /// Draw a mirror that reflects a .lfslab file
     Render(RenderArgs),
+    /// Compare ways to reflect a scene, ours and those that people use today: error, time and bytes on the same frames
+    Methods(MethodsArgs),
     /// Show what a .lfslab file holds
     Info(InfoArgs),
     /// Check every byte of a .lfslab file

@@ -327,7 +327,7 @@ fn facts(args: &DemoArgs, prepared: &Prepared) -> Vec<(String, String)> {
 }
 
 /// The command that was typed, for the report; words that a shell would change are quoted.
-fn command_line() -> String {
+pub(crate) fn command_line() -> String {
     let quoted = |word: std::ffi::OsString| {
         let word = word.to_string_lossy().into_owned();
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);

@@ -60,20 +60,20 @@ impl Method for GpuMethod<'_> {
 }
 
 /// Its twin on the CPU.
-pub(crate) struct CpuMethod<'a, E> {
+pub(crate) struct CpuMethod<'a, E: ?Sized> {
     environment: &'a E,
     mesh: &'a TriangleMesh,
     camera: &'a Pinhole,
     drawn: Option<Image<[u8; 4]>>,
 }
 
-impl<'a, E: Environment> CpuMethod<'a, E> {
+impl<'a, E: Environment + ?Sized> CpuMethod<'a, E> {
     pub(crate) fn new(environment: &'a E, mesh: &'a TriangleMesh, camera: &'a Pinhole) -> Self {
         Self { environment, mesh, camera, drawn: None }
     }
 }
 
-impl<E: Environment> Method for CpuMethod<'_, E> {
+impl<E: Environment + ?Sized> Method for CpuMethod<'_, E> {
     fn draw(&mut self) -> Result<()> {
         self.drawn = Some(reflect_frame(&GBuffer::rasterize(self.mesh, self.camera), self.environment));
         Ok(())

@@ -135,10 +135,10 @@ impl Stage<'_> {
             let (timing, picture) = match (side, &device_mesh, asked) {
                 (Some(side), Some(mesh), _) => {
                     let pass = if asked == Asked::Slabs { &side.slabs } else { &side.cube };
-                    timed(GpuMethod { gpu: &side.gpu, pass, target: &side.target, mesh, camera })?
+                    timed(GpuMethod { gpu: &side.gpu, pass, target: &side.target, mesh, camera }, REPEATS)?
                 }
-                (_, _, Asked::Slabs) => timed(CpuMethod::new(&self.cpu.slabs, mesh, camera))?,
-                (_, _, Asked::Cube) => timed(CpuMethod::new(&self.cpu.cube, mesh, camera))?,
+                (_, _, Asked::Slabs) => timed(CpuMethod::new(&self.cpu.slabs, mesh, camera), REPEATS)?,
+                (_, _, Asked::Cube) => timed(CpuMethod::new(&self.cpu.cube, mesh, camera), REPEATS)?,
             };
             timings.push(timing);
             pictures.push(over(&picture, background));
@@ -149,9 +149,9 @@ impl Stage<'_> {
 }
 
 /// Draws a frame several times; the timing and the picture.
-fn timed(mut method: impl Method) -> Result<(Timing, Image<[u8; 4]>)> {
+pub(crate) fn timed(mut method: impl Method, repeats: usize) -> Result<(Timing, Image<[u8; 4]>)> {
     let mut outcome = Ok(());
-    let timing = measure(WARM_UP, REPEATS, || {
+    let timing = measure(WARM_UP, repeats, || {
         if let Err(error) = method.draw() {
             outcome = Err(error);
         }
@@ -161,7 +161,7 @@ fn timed(mut method: impl Method) -> Result<(Timing, Image<[u8; 4]>)> {
 }
 
 /// The frames of several timings as one.
-fn merged(timings: &[Timing]) -> Result<Timing> {
+pub(crate) fn merged(timings: &[Timing]) -> Result<Timing> {
     let samples = timings.iter().flat_map(|timing| timing.samples().to_vec()).collect();
     Timing::from_seconds(samples).context("no frames were timed")
 }

@@ -7,6 +7,7 @@
 mod args;
 mod capture;
 mod capture_args;
+mod contenders;
 mod crop;
 mod cubemap;
 mod demo;
@@ -18,6 +19,8 @@ mod info;
 mod input;
 mod output;
 mod pictures;
+mod methods;
+mod methods_args;
 mod plan;
 mod plan_args;
 mod progress;
@@ -53,6 +56,7 @@ fn run(command: &Command) -> Result<()> {
         Command::Merge(args) => capture::run_merge(args),
         Command::Cubemap(args) => cubemap::run(args),
         Command::Plan(args) => plan::run(args),
+        Command::Methods(args) => methods::run(args),
         Command::Render(args) => render::run(args),
         Command::Info(args) => info::run(args),
         Command::Validate(args) => validate::run(args),

@@ -26,7 +26,7 @@ pub(crate) struct SceneArgs {
 }
 
 /// Which light is traced, and light from outside the scene.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct LightArgs {
     /// Which light is traced
     #[arg(long, value_enum, default_value_t = LightKind::Direct)]
@@ -58,6 +58,13 @@ pub(crate) enum LightKind {
     Direct,
     /// All of it, by path tracing
     Global,
+}
+
+impl SceneArgs {
+    /// A scene with the cell that belongs to it.
+    pub(crate) fn of(scene: &str, light: &LightArgs) -> Self {
+        Self { scene: scene.to_owned(), light: light.clone(), camera: None, cell: None }
+    }
 }
 
 impl LightArgs {

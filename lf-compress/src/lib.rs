@@ -17,6 +17,7 @@ mod check;
 mod error;
 mod file;
 mod packed;
+mod packed_cube;
 mod picture;
 pub mod planes;
 mod recut;
@@ -31,6 +32,7 @@ pub use file::{decode_into, pack_tile, unpack_into};
 /// The container crate, whose types the packed light field speaks.
 pub use lf_format as format;
 pub use packed::{PackOptions, PackedLightField, encode_linear_tile, encode_tile};
+pub use packed_cube::PackedCube;
 pub use picture::{Texel, rgba16f, tile_picture};
 pub use validate::{Finding, Severity, validate};
 

@@ -69,7 +69,8 @@ impl LitCube {
 pub(crate) fn span<'a>(cubes: impl Iterator<Item = &'a DistanceCube>) -> [f32; 2] {
     let inverses = cubes.flat_map(|cube| cube.inverse_depths().iter().flat_map(|face| face.texels()));
     let met = inverses.copied().filter(|inverse| *inverse > 0.0);
-    let [least, largest] = met.fold([f32::INFINITY, 0.0], |[least, largest]: [f32; 2], inverse| [least.min(inverse), largest.max(inverse)]);
+    let [least, largest] = met
+        .fold([f32::INFINITY, 0.0], |[least, largest]: [f32; 2], inverse| [least.min(inverse), largest.max(inverse)]);
     if largest == 0.0 { [1.0, 2.0] } else { [0.5 / largest, 4.0 / least] }
 }
 

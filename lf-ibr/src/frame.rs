@@ -18,7 +18,7 @@ pub trait Environment: Sync {
 /// Pixels without the reflector are transparent black (0, 0, 0, 0); the others are opaque, black where the environment
 /// has no answer.
 #[must_use]
-pub fn reflect_frame(gbuffer: &GBuffer, environment: &impl Environment) -> Image<[u8; 4]> {
+pub fn reflect_frame(gbuffer: &GBuffer, environment: &(impl Environment + ?Sized)) -> Image<[u8; 4]> {
     let eye = gbuffer.eye();
     let mut image = Image::filled(gbuffer.fragments().width(), gbuffer.fragments().height(), [0; 4]);
     image.texels_mut().par_iter_mut().zip(gbuffer.fragments().texels()).for_each(|(pixel, fragment)| {

@@ -4,6 +4,9 @@ use glam::Vec2;
 use half::f16;
 use lf_math::{GeometryError, LightFieldGeometry, Ray, Slab, SlabTexels};
 
+/// The largest half float: what stands on the camera plane has no inverse depth.
+const MAX: f32 = 65504.0;
+
 /// A light field of inverse depths: 1/m along the face's axis from the camera plane, negative behind it, 0 where nothing is met.
 #[derive(Debug, Clone)]
 pub struct DepthGuide {
@@ -15,20 +18,31 @@ impl DepthGuide {
     /// A guide with the inverse depths of each slab.
     ///
     /// # Errors
-    /// There must be whole images for every slab, with its numbers of cameras and texels.
-    pub fn new(geometry: LightFieldGeometry, texels: Vec<SlabTexels<f16>>) -> Result<Self, GeometryError> {
+    /// There must be whole images for every slab, with its numbers of cameras and texels. They are rounded to half floats.
+    pub fn new(geometry: LightFieldGeometry, texels: &[SlabTexels<f32>]) -> Result<Self, GeometryError> {
         let expected = geometry.slabs().len();
         if texels.len() != expected {
             return Err(GeometryError::Length { what: "guide slabs", len: texels.len(), expected });
         }
-        for (slab, texels) in geometry.slabs().iter().zip(&texels) {
+        for (slab, texels) in geometry.slabs().iter().zip(texels) {
             texels.check(slab)?;
             let whole = slab.cameras().iter().chain(&slab.resolution()).map(|&n| n as usize).product();
             if texels.texels().len() != whole {
-                return Err(GeometryError::Length { what: "guide texels", len: texels.texels().len(), expected: whole });
+                return Err(GeometryError::Length {
+                    what: "guide texels",
+                    len: texels.texels().len(),
+                    expected: whole,
+                });
             }
         }
-        Ok(Self { geometry, texels })
+        let rounded = |texels: &SlabTexels<f32>| texels.map(|inverse| f16::from_f32(inverse.clamp(-MAX, MAX)));
+        Ok(Self { geometry, texels: texels.iter().map(rounded).collect() })
+    }
+
+    /// Bytes of the half floats.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.texels.iter().map(|texels| 2 * texels.texels().len()).sum()
     }
 
     /// The cell and the slabs.
@@ -59,7 +73,12 @@ impl DepthGuide {
             // Casts of what is out of range, or not a number, saturate.
             let place = indexed.coord.uv + disparity * first * (indexed.coord.st - camera);
             let [u, v] = [place.x.max(0.0) as u32, place.y.max(0.0) as u32];
-            let around = [(u, v), (u.saturating_add(1), v), (u, v.saturating_add(1)), (u.saturating_add(1), v.saturating_add(1))];
+            let around = [
+                (u, v),
+                (u.saturating_add(1), v),
+                (u, v.saturating_add(1)),
+                (u.saturating_add(1), v.saturating_add(1)),
+            ];
             for inverse in around.map(|(u, v)| texel(u, v)) {
                 let end = end(slab, ray, inverse);
                 if end > 0.0 {

@@ -61,7 +61,12 @@ impl GuidedField {
         let apart = cubes.iter().map(reach).fold(0.0, f32::max);
         let texels = cubes.iter().map(DistanceCube::depth_size).max().unwrap_or(first.depth_size());
         let [_, far] = span(cubes.iter());
-        Ok(Self { parallax: 0.5 * apart * texels as f32, far, cubes: cubes.into_iter().map(LitCube::new).collect(), guide })
+        Ok(Self {
+            parallax: 0.5 * apart * texels as f32,
+            far,
+            cubes: cubes.into_iter().map(LitCube::new).collect(),
+            guide,
+        })
     }
 
     /// Where a ray of unit direction ends, cell space.
@@ -97,7 +102,8 @@ impl GuidedField {
     fn search(&self, ray: &Ray, bracket: [f32; 2], free: impl FnMut(Vec3) -> bool) -> Option<f32> {
         let texels = self.parallax * (bracket[0].recip() - bracket[1].recip());
         let steps = (texels / STEP_TEXELS).ceil().clamp(STEPS[0], STEPS[1]) as u32;
-        crossing(ray, bracket, steps, self.halvings(bracket, steps), free).map(|found| 0.5 * (found.free + found.hidden))
+        crossing(ray, bracket, steps, self.halvings(bracket, steps), free)
+            .map(|found| 0.5 * (found.free + found.hidden))
     }
 
     fn halvings(&self, bracket: [f32; 2], steps: u32) -> u32 {

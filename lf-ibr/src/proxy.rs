@@ -91,7 +91,10 @@ mod tests {
             let mut image = Image::filled(size, size, [0; 4]);
             for (i, texel) in (0u32..).zip(image.texels_mut()) {
                 let uv = (glam::Vec2::new((i % size) as f32, (i / size) as f32) + 0.5) / size as f32;
-                *texel = color(meet(cube_direction(CubeCoord { face, uv }))).extend(1.0).to_array().map(|c| (255.0 * c).round() as u8);
+                *texel = color(meet(cube_direction(CubeCoord { face, uv })))
+                    .extend(1.0)
+                    .to_array()
+                    .map(|c| (255.0 * c).round() as u8);
             }
             image
         });

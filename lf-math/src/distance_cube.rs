@@ -118,7 +118,9 @@ impl DistanceCube {
         let size = self.depth_size();
         let distances = Face::ALL.into_iter().flat_map(|face| {
             let texels = self.inverse_depths[usize::from(face.index())].texels();
-            (0..size * size).zip(texels).map(move |(index, inverse)| texel_direction(face, index, size).length() / inverse)
+            (0..size * size)
+                .zip(texels)
+                .map(move |(index, inverse)| texel_direction(face, index, size).length() / inverse)
         });
         median(distances.collect())
     }
@@ -198,7 +200,10 @@ mod tests {
     fn the_box_of_an_empty_room_is_the_room() {
         let walls = [Vec3::new(-2.0, -2.5, -3.0), Vec3::new(3.0, 3.0, 2.0)];
         let [min, max] = room(Vec3::new(0.5, 0.25, -0.5), walls, 64).median_box();
-        assert!((min - walls[0]).abs().max_element() < 1e-4 && (max - walls[1]).abs().max_element() < 1e-4, "{min} {max}");
+        assert!(
+            (min - walls[0]).abs().max_element() < 1e-4 && (max - walls[1]).abs().max_element() < 1e-4,
+            "{min} {max}"
+        );
     }
 
     #[test]

@@ -1,7 +1,14 @@
 //! Error of one image against another.
 
+use crate::color::linear_from_srgb;
 use crate::error::GeometryError;
 use crate::image::Image;
+
+/// A difference of more than a tenth of the range, in steps of 1/255.
+const TENTH: u8 = 25;
+/// Of the squared mean of the reference, what is added to the squared reference where errors are relative: a hundredth, so that black
+/// pixels do not decide.
+const REL_MSE_FLOOR: f64 = 0.01;
 
 /// How far an image is from its reference, over a set of pixels, on 8-bit display values.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +19,11 @@ pub struct ImageError {
     pub mse: f64,
     /// Largest difference of any component, 0 … 255.
     pub max_abs: u8,
+    /// Number of pixels with a component that is off by more than a tenth of the range.
+    pub over_tenth: usize,
+    /// Mean of (a − b)²/(b² + ε) over all linear R, G and B values, b being the reference's and ε a hundredth of the square of their mean;
+    /// 0 where both are black all over.
+    pub rel_mse: f64,
 }
 
 impl ImageError {
@@ -20,11 +32,17 @@ impl ImageError {
     pub fn psnr_db(&self) -> f64 {
         10.0 * libm::log10(255.0 * 255.0 / self.mse)
     }
+
+    /// Share of the pixels with a component that is off by more than a tenth of the range.
+    #[must_use]
+    pub fn share_over_tenth(&self) -> f64 {
+        self.over_tenth as f64 / self.pixels as f64
+    }
 }
 
 /// Compares the RGB values of two images where `mask` is true; alpha is ignored.
 ///
-/// Sums are exact integers, so the result does not depend on the order of the pixels.
+/// Sums are exact integers, but for that of relative errors, and so do not depend on the order of the pixels.
 ///
 /// # Errors
 /// The images and the mask must have the same size, and the mask at least one true pixel.
@@ -39,20 +57,35 @@ pub fn image_error(
             return Err(GeometryError::Size { what, have, want });
         }
     }
-    let (mut pixels, mut sum, mut max_abs) = (0usize, 0u64, 0u8);
-    let pairs = reference.texels().iter().zip(test.texels()).zip(mask.texels());
-    for ((a, b), _) in pairs.filter(|(_, inside)| **inside) {
+    let pairs = || {
+        let all = reference.texels().iter().zip(test.texels()).zip(mask.texels());
+        all.filter(|(_, inside)| **inside).map(|((a, b), _)| ([a[0], a[1], a[2]], [b[0], b[1], b[2]]))
+    };
+    let linear: [f64; 256] = core::array::from_fn(|i| f64::from(linear_from_srgb(i as f32 / 255.0)));
+    let (mut pixels, mut sum, mut max_abs, mut over_tenth, mut light) = (0usize, 0u64, 0, 0, 0.0);
+    for (a, b) in pairs() {
         pixels += 1;
-        for c in 0..3 {
-            let difference = a[c].abs_diff(b[c]);
-            max_abs = max_abs.max(difference);
-            sum += u64::from(difference) * u64::from(difference);
-        }
+        let differences: [u8; 3] = core::array::from_fn(|c| a[c].abs_diff(b[c]));
+        let largest = differences.into_iter().fold(0, u8::max);
+        max_abs = max_abs.max(largest);
+        over_tenth += usize::from(largest > TENTH);
+        sum += differences.into_iter().map(|d| u64::from(d) * u64::from(d)).sum::<u64>();
+        light += a.into_iter().map(|value| linear[usize::from(value)]).sum::<f64>();
     }
     if pixels == 0 {
         return Err(GeometryError::ZeroCount { what: "number of compared pixels" });
     }
-    Ok(ImageError { pixels, mse: sum as f64 / (3 * pixels) as f64, max_abs })
+    let values = (3 * pixels) as f64;
+    let floor = (REL_MSE_FLOOR * (light / values) * (light / values)).max(f64::MIN_POSITIVE);
+    let relative = |(a, b): ([u8; 3], [u8; 3])| -> f64 {
+        let channel = |c: usize| {
+            let (a, b) = (linear[usize::from(a[c])], linear[usize::from(b[c])]);
+            (a - b) * (a - b) / (a * a + floor)
+        };
+        (0..3).map(channel).sum()
+    };
+    let rel_mse = if light == 0.0 && sum == 0 { 0.0 } else { pairs().map(relative).sum::<f64>() / values };
+    Ok(ImageError { pixels, mse: sum as f64 / values, max_abs, over_tenth, rel_mse })
 }
 
 #[cfg(test)]
@@ -65,9 +98,24 @@ mod tests {
         let test = Image::new(2, 1, alloc::vec![[13, 20, 30, 0], [255; 4]]).unwrap();
         let mask = Image::new(2, 1, alloc::vec![true, false]).unwrap();
         let error = image_error(&reference, &test, &mask).unwrap();
-        assert_eq!(error, ImageError { pixels: 1, mse: 3.0, max_abs: 3 });
+        assert_eq!((error.pixels, error.mse, error.max_abs, error.over_tenth), (1, 3.0, 3, 0));
         assert!((error.psnr_db() - 43.3596).abs() < 1e-3);
         assert!(image_error(&reference, &reference, &mask).unwrap().psnr_db().is_infinite());
+    }
+
+    /// By hand: white against half of its light, and grey against itself.
+    #[test]
+    fn relative_errors_are_of_linear_light() {
+        let reference = Image::new(2, 1, alloc::vec![[255; 4], [188, 188, 188, 255]]).unwrap();
+        let test = Image::new(2, 1, alloc::vec![[188; 4], [188, 188, 188, 255]]).unwrap();
+        let error = image_error(&reference, &test, &Image::filled(2, 1, true)).unwrap();
+        let half = 0.502_886_5f64;
+        let floor = 0.01 * (0.5 * (1.0 + half)).powi(2);
+        let expected = 0.5 * (1.0 - half).powi(2) / (1.0 + floor);
+        assert!((error.rel_mse - expected).abs() < 1e-6, "{error:?} {expected}");
+        assert_eq!((error.over_tenth, error.share_over_tenth()), (1, 0.5));
+        let black = Image::filled(2, 1, [0; 4]);
+        assert_eq!(image_error(&black, &black, &Image::filled(2, 1, true)).unwrap().rel_mse, 0.0);
     }
 
     #[test]

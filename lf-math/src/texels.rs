@@ -66,6 +66,13 @@ impl<T: Copy> SlabTexels<T> {
         Ok(Self { starts: Starts::new(&coverage), coverage, texels })
     }
 
+    /// The same with every texel mapped.
+    #[must_use]
+    pub fn map<U: Copy>(&self, f: impl FnMut(T) -> U) -> SlabTexels<U> {
+        let texels = self.texels.iter().copied().map(f).collect();
+        SlabTexels { coverage: self.coverage.clone(), starts: self.starts.clone(), texels }
+    }
+
     /// What `coverage` keeps of these texels.
     ///
     /// # Errors

@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn equal_images_have_null_psnr_in_json() {
-        let equal = EyeError::new(3, ImageError { pixels: 7, mse: 0.0, max_abs: 0 });
+        let equal = EyeError::new(3, ImageError { pixels: 7, mse: 0.0, max_abs: 0, over_tenth: 0, rel_mse: 0.0 });
         assert!(equal.psnr_db.is_infinite());
         let json = serde_json::to_value(&equal).unwrap();
         assert_eq!(json, serde_json::json!({"eye": 3, "psnr_db": null, "mse": 0.0, "max_abs": 0, "pixels": 7}));

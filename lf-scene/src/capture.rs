@@ -101,6 +101,28 @@ pub fn capture_slabs(
     Ok(Capture { geometry, texels, rays })
 }
 
+/// Traces the inverse depth of every sample of every slab, on all threads: [`TexelSampler::inverse_depth`], but for what stands on a
+/// camera plane finite.
+///
+/// # Errors
+/// If the slabs need more texels than fit in memory addresses.
+pub fn capture_inverse_depths(
+    tracer: &Tracer,
+    geometry: &LightFieldGeometry,
+) -> Result<Vec<SlabTexels<f32>>, GeometryError> {
+    let sampler = TexelSampler::new(tracer, geometry, 1);
+    let slab = |(number, slab): (usize, &lf_math::Slab)| {
+        let ([across, down], [width, height]) = (slab.cameras(), slab.resolution());
+        let cameras = (0..across * down).into_par_iter();
+        let image = |camera: u32| {
+            let texels = (0..height).flat_map(move |v| (0..width).map(move |u| [u, v]));
+            texels.map(move |texel| sampler.inverse_depth(number, [camera % across, camera / across], texel))
+        };
+        SlabTexels::new(slab, cameras.flat_map_iter(image).collect())
+    };
+    geometry.slabs().iter().enumerate().map(slab).collect()
+}
+
 /// Traces a cell-space ray.
 pub(crate) fn trace_in_cell_space(tracer: &Tracer, cell: &Cell, ray: &Ray) -> Traced {
     tracer.trace(cell.world_from_cell(ray.origin).as_vec3(), ray.direction)

@@ -52,7 +52,7 @@ mod surface_point;
 mod tracer;
 mod view;
 
-pub use capture::{Capture, TexelSampler, capture_slabs};
+pub use capture::{Capture, TexelSampler, capture_inverse_depths, capture_slabs};
 pub use cube::{capture_cube, capture_distance_cube, trace_cube};
 pub use embedded::{EMBEDDED, EmbeddedScene, beside, corridor, forest, mirror_box, museum};
 pub use environment::{Environment, EnvironmentMap};

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::bvh::{Hit, TriangleBvh};
 use crate::emitters::Emitters;
+use crate::material::{Material, Scattering};
 use crate::quality::{Estimate, Illumination, Quality};
 use crate::random::Random;
 use crate::rounded::RoundedPoint;
@@ -45,8 +46,23 @@ impl Tracer {
 
     /// The same with another quality.
     #[must_use]
-    pub fn with_quality(self, quality: Quality) -> Self {
-        Self { emitters: emitters(&self.scene, &quality), quality, ..self }
+    pub fn with_quality(mut self, quality: Quality) -> Self {
+        self.set_quality(quality);
+        self
+    }
+
+    /// Traces with another quality from now on.
+    pub fn set_quality(&mut self, quality: Quality) {
+        self.emitters = emitters(&self.scene, &quality);
+        self.quality = quality;
+    }
+
+    /// Whether another seed may give another answer: with all light, light that has an extent, or glass.
+    #[must_use]
+    pub fn is_random(&self) -> bool {
+        let glass = |material: &Material| matches!(material.scattering, Scattering::Glass { .. });
+        let direct = self.quality.illumination == Illumination::Direct;
+        !direct || !self.emitters.is_empty() || self.scene.materials().iter().any(glass)
     }
 
     /// The scene.
@@ -171,6 +187,18 @@ mod tests {
             assert!((f64::from(traced.radiance.x) - exact).abs() < 1e-4 * exact, "{x}: {traced:?} {exact}");
             assert!((traced.distance - 0.25).abs() < 1e-6);
         }
+    }
+
+    #[test]
+    fn randomness_is_known() {
+        let lamp = Light::Point { position: Vec3::Y, intensity: Vec3::ONE };
+        let mut tracer = lit_floor(vec![lamp], Environment::BLACK);
+        assert!(!tracer.is_random());
+        let quality = Quality { illumination: Illumination::Global { max_bounces: 1 }, ..Quality::default() };
+        tracer.set_quality(quality);
+        assert!(tracer.is_random() && *tracer.quality() == quality);
+        assert!(Tracer::new(crate::mirror_box::scene()).is_random());
+        assert!(!Tracer::new(crate::museum::scene()).is_random());
     }
 
     #[test]

@@ -1,0 +1,216 @@
+//! The methods that `lfslab methods` compares, each ready to draw.
+//!
+//! Data is made as a device would hold it, and drawn as decoded from that: BC1 blocks for colours, blocks of two planes for depths,
+//! for other people's methods as for ours.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::Result;
+use glam::Vec3;
+use lf_capture::Options;
+use lf_compress::bc1::Quality;
+use lf_compress::{PackOptions, PackedCube, PackedLightField};
+use lf_gpu::{Gpu, ReflectionPass, SlabTexture, Storage};
+use lf_ibr::{
+    BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, Search, SlabField, SphereCube,
+};
+use lf_math::{DistanceCube, LightFieldGeometry, PlanePlacement};
+use lf_scene::{capture_distance_cube, capture_inverse_depths, focus};
+
+use crate::args::{FileArgs, Preset};
+use crate::capture::{Captured, capture_to};
+use crate::input::{MAX_DECODED_BYTES, load};
+use crate::sources::Source;
+
+/// Texels along the edge of a single cube's faces.
+const CUBE: u32 = 1024;
+/// Steps of the searches in distance cubes; more gain less than a tenth of a decibel in the museum, fewer lose more.
+const FIXED_POINT: u32 = 4;
+const MARCH: Search = Search::March { steps: 64, halvings: 6 };
+/// Eight probes stand at the corners of a cube this large, of the cell's size.
+const PROBES_AT: f32 = 0.7;
+/// One of the guided cubes stands in the middle, four at corners of a cube this large.
+const GUIDED_AT: f32 = 0.9;
+/// Cameras and texels of the guide, per axis. More of them gain nothing in the museum.
+const GUIDE: [u32; 2] = [6, 24];
+/// One ray a texel: several cubes make up for each other's gaps, and means of four would be blurred twice (a decibel in the museum).
+const GUIDED_GRID: u32 = 1;
+
+/// How much of the device a method may take, and where files may be put on the way.
+pub(crate) struct Budget<'a> {
+    pub(crate) bytes: u64,
+    pub(crate) folder: &'a Path,
+}
+
+/// A method ready to draw.
+pub(crate) struct Contender<'a> {
+    pub(crate) name: &'static str,
+    pub(crate) parameters: String,
+    /// On the device.
+    pub(crate) bytes: u64,
+    pub(crate) on_disk: Option<u64>,
+    pub(crate) preparation_s: f64,
+    pub(crate) drawn: Drawn<'a>,
+}
+
+/// What draws.
+pub(crate) enum Drawn<'a> {
+    OnCpu(&'a dyn Environment),
+    OnGpu(&'a Gpu, &'a ReflectionPass),
+}
+
+type Each<'a> = dyn FnMut(&Contender<'_>) -> Result<()> + 'a;
+
+/// Makes one method after another and hands it on.
+pub(crate) fn contenders(source: &Source, budget: &Budget<'_>, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
+    let mut within = |contender: &Contender<'_>| if contender.bytes <= budget.bytes { each(contender) } else { Ok(()) };
+    one_cube(source, gpu, &mut within)?;
+    for megabytes in [12.6, 50.0] {
+        if megabytes * 1e6 <= budget.bytes as f64 {
+            probes(source, megabytes, &mut within)?;
+        }
+    }
+    for preset in [Preset::Small, Preset::Paper] {
+        slabs(source, budget.folder, preset, gpu, &mut within)?;
+    }
+    for megabytes in [3.1, 12.6, 50.0] {
+        if megabytes * 1e6 <= budget.bytes as f64 {
+            guided(source, megabytes, &mut within)?;
+        }
+    }
+    Ok(())
+}
+
+/// Everything that one cube map at the cell's centre can do, with and without its depths.
+fn one_cube(source: &Source, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
+    let start = Instant::now();
+    let (packed, cube) = capture(source, Vec3::ZERO, CUBE, 2)?;
+    let preparation_s = start.elapsed().as_secs_f64();
+    let picture: usize = packed.radiance().iter().map(Vec::len).sum();
+    let map = CubeField::new(cube.radiance());
+    let mut hand = |name, parameters: String, bytes: usize, environment: &dyn Environment| {
+        let drawn = Drawn::OnCpu(environment);
+        each(&Contender { name, parameters, bytes: bytes as u64, on_disk: None, preparation_s, drawn })
+    };
+    let size = format!("{CUBE}², BC1");
+    hand(lf_report::BASELINE_METHOD, size.clone(), picture, &map)?;
+    hand("sphere-projected map", size.clone(), picture, &SphereCube::new(map.clone(), Vec3::ZERO, cube.median_distance()))?;
+    hand("box-projected map", size.clone(), picture, &BoxCube::new(map, Vec3::ZERO, cube.median_box()))?;
+    for (search, steps) in [(Search::FixedPoint(FIXED_POINT), "fixed point, 4 steps"), (MARCH, "64 steps, 6 halvings")] {
+        let field = DistanceField::new(cube.clone(), search);
+        hand("distance cube", format!("{size}, depth blocks; {steps}"), packed.bytes(), &field)?;
+    }
+    if let Some(gpu) = gpu {
+        let pass = ReflectionPass::environment(gpu, cube.radiance())?;
+        let (name, parameters) = (lf_report::BASELINE_METHOD, format!("{CUBE}², RGBA8"));
+        let (bytes, drawn) = (24 * u64::from(CUBE).pow(2), Drawn::OnGpu(gpu, &pass));
+        each(&Contender { name, parameters, bytes, on_disk: None, preparation_s, drawn })?;
+    }
+    Ok(())
+}
+
+/// Eight distance cubes, as many texels as fit.
+fn probes(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
+    let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0;
+    let places = (0..8).map(|i| PROBES_AT * corner(i) * source.cell.half_extent());
+    // From this many bytes on one ray a texel is traced, not four: that would take minutes.
+    let grid = if megabytes > 20.0 { 1 } else { 2 };
+    let set = CubeSet::capture(source, &places.collect::<Vec<_>>(), megabytes * 1e6, grid)?;
+    let field = ProbeField::new(set.cubes, 64, 6)?;
+    each(&Contender {
+        name: "8 distance cubes",
+        parameters: format!("{}², BC1, depth blocks; 64 steps, 6 halvings; rays a texel: {}", set.size, set.rays),
+        bytes: set.bytes,
+        on_disk: None,
+        preparation_s: set.preparation_s,
+        drawn: Drawn::OnCpu(&field),
+    })
+}
+
+/// Five distance cubes and a guide.
+fn guided(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
+    let start = Instant::now();
+    let [cameras, resolution] = GUIDE;
+    let geometry = LightFieldGeometry::around(source.cell, PlanePlacement::CellCenter, cameras, resolution)?;
+    let geometry = focus(&source.tracer, &geometry)?;
+    let guide = DepthGuide::new(geometry.clone(), &capture_inverse_depths(&source.tracer, &geometry)?)?;
+    let guide_s = start.elapsed().as_secs_f64();
+    let guide_bytes = guide.bytes() as u64;
+    let corners = [[0.0; 3], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    let places = corners.map(|corner| GUIDED_AT * Vec3::from(corner) * source.cell.half_extent());
+    let set = CubeSet::capture(source, &places, megabytes * 1e6 - guide_bytes as f64, GUIDED_GRID)?;
+    let field = GuidedField::new(set.cubes, guide)?;
+    each(&Contender {
+        name: "guided cubes (ours)",
+        parameters: format!("5 × {}², BC1, depth blocks; guide {cameras}²×{resolution}²; rays a texel: {}", set.size, set.rays),
+        bytes: set.bytes + guide_bytes,
+        on_disk: None,
+        preparation_s: guide_s + set.preparation_s,
+        drawn: Drawn::OnCpu(&field),
+    })
+}
+
+/// Slabs of a preset, on the CPU and in every form that the device can hold.
+fn slabs(source: &Source, folder: &Path, preset: Preset, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
+    let sampling = preset.sampling();
+    let file = folder.join(format!("{}-{}.lfslab", source.name(), preset.name()));
+    let encoding = lf_format::TexelEncoding::Bc1;
+    let options =
+        Options { grid: sampling.grid, encoding, pack: PackOptions::default(), whole: false, depth: false };
+    let captured = capture_to(source, &sampling, options, &file)?;
+    let field = load(&FileArgs::new(&file))?;
+    let size = format!("6 × {0}² × {1}²", sampling.cameras[0], sampling.resolution[0]);
+    let environment = SlabField::new(field.geometry().clone(), field.decode(MAX_DECODED_BYTES)?)?;
+    each(&of_slabs(&captured, format!("{size}, BC1, decoded before"), blocks(&field), Drawn::OnCpu(&environment)))?;
+    for storage in [Storage::Bc1Volume, Storage::Bc1Array, Storage::Rgba8Array] {
+        let Some(gpu) = gpu else { break };
+        match SlabTexture::with_storage(gpu, &field, storage) {
+            Ok(texture) => {
+                let pass = ReflectionPass::slabs(gpu, &texture)?;
+                each(&of_slabs(&captured, format!("{size}, {storage}"), texture.bytes(), Drawn::OnGpu(gpu, &pass)))?;
+            }
+            Err(error) => eprintln!("left out: {error}"),
+        }
+    }
+    Ok(())
+}
+
+fn of_slabs<'a>(captured: &Captured, parameters: String, bytes: u64, drawn: Drawn<'a>) -> Contender<'a> {
+    let (on_disk, preparation_s) = (Some(captured.file_bytes), captured.time.as_secs_f64());
+    Contender { name: "slabs", parameters, bytes, on_disk, preparation_s, drawn }
+}
+
+/// Bytes of the blocks in a light field's tiles.
+fn blocks(field: &PackedLightField) -> u64 {
+    (0..field.tilings().len()).flat_map(|slab| field.tiles(slab)).map(|tile| tile.len() as u64).sum()
+}
+
+/// Distance cubes of a total size.
+struct CubeSet {
+    cubes: Vec<DistanceCube>,
+    size: u32,
+    rays: u32,
+    bytes: u64,
+    preparation_s: f64,
+}
+
+impl CubeSet {
+    fn capture(source: &Source, places: &[Vec3], bytes: f64, grid: u32) -> Result<Self> {
+        // Half a byte a texel for its colour, 20/64 for its depth; blocks of colour are 4 texels wide.
+        let size = (bytes / (6.0 * places.len() as f64 * (0.5 + 20.0 / 64.0))).sqrt() as u32 / 8 * 8;
+        let start = Instant::now();
+        let made = places.iter().map(|&place| capture(source, place, size, grid)).collect::<Result<Vec<_>>>()?;
+        let (packed, cubes): (Vec<_>, Vec<_>) = made.into_iter().unzip();
+        let bytes = packed.iter().map(|cube: &PackedCube| cube.bytes() as u64).sum();
+        Ok(Self { cubes, size, rays: grid * grid, bytes, preparation_s: start.elapsed().as_secs_f64() })
+    }
+}
+
+/// A cube as the device holds it, and decoded again.
+fn capture(source: &Source, place: Vec3, size: u32, grid: u32) -> Result<(PackedCube, DistanceCube)> {
+    let cube = capture_distance_cube(&source.tracer, &source.cell, place, [size; 2], grid)?;
+    let packed = PackedCube::encode(&cube, Quality::High)?;
+    let decoded = packed.decode()?;
+    Ok((packed, decoded))
+}
