@@ -11,11 +11,11 @@ use glam::Vec3;
 use lf_capture::Options;
 use lf_compress::bc1::Quality;
 use lf_compress::{PackOptions, PackedCube, PackedLightField};
-use lf_gpu::{Gpu, ReflectionPass, SlabTexture, Storage};
+use lf_gpu::{Gpu, GpuError, Proxy, ReflectionPass, SlabTexture, Storage};
 use lf_ibr::{
     BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, Search, SlabField, SphereCube,
 };
-use lf_math::{DistanceCube, LightFieldGeometry, PlanePlacement};
+use lf_math::{Coverage, DistanceCube, LightFieldGeometry, PlanePlacement};
 use lf_scene::{capture_distance_cube, capture_inverse_depths, focus};
 
 use crate::args::{FileArgs, Preset};
@@ -26,8 +26,13 @@ use crate::sources::Source;
 /// Texels along the edge of a single cube's faces.
 const CUBE: u32 = 1024;
 /// Steps of the searches in distance cubes; more gain less than a tenth of a decibel in the museum, fewer lose more.
-const FIXED_POINT: u32 = 4;
-const MARCH: Search = Search::March { steps: 64, halvings: 6 };
+const SEARCHES: [(Search, &str); 2] = [
+    (Search::FixedPoint(4), "fixed point, 4 steps"),
+    (Search::March { steps: 64, halvings: 6 }, "64 steps, 6 halvings"),
+];
+/// The same on the GPU.
+const ON_GPU: [(lf_gpu::Search, &str); 2] =
+    [(lf_gpu::Search::FixedPoint(4), SEARCHES[0].1), (lf_gpu::Search::March { steps: 64, halvings: 6 }, SEARCHES[1].1)];
 /// Eight probes stand at the corners of a cube this large, of the cell's size.
 const PROBES_AT: f32 = 0.7;
 /// One of the guided cubes stands in the middle, four at corners of a cube this large.
@@ -41,6 +46,16 @@ const GUIDED_GRID: u32 = 1;
 pub(crate) struct Budget<'a> {
     pub(crate) bytes: u64,
     pub(crate) folder: &'a Path,
+}
+
+impl Budget<'_> {
+    /// Sizes at which methods are compared that can have any, MB: the last two are those of eight and of 32 distance cubes of 512² texels in
+    /// BC1 and BC4.
+    fn sizes(&self) -> Vec<f64> {
+        let most = self.bytes as f64 / 1e6;
+        let fitting: Vec<f64> = [3.1, 12.6, 50.0].into_iter().filter(|size| *size <= most).collect();
+        if fitting.is_empty() { vec![most] } else { fitting }
+    }
 }
 
 /// A method ready to draw.
@@ -65,27 +80,23 @@ type Each<'a> = dyn FnMut(&Contender<'_>) -> Result<()> + 'a;
 /// Makes one method after another and hands it on.
 pub(crate) fn contenders(source: &Source, budget: &Budget<'_>, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
     let mut within = |contender: &Contender<'_>| if contender.bytes <= budget.bytes { each(contender) } else { Ok(()) };
-    one_cube(source, gpu, &mut within)?;
-    for megabytes in [12.6, 50.0] {
-        if megabytes * 1e6 <= budget.bytes as f64 {
-            probes(source, megabytes, &mut within)?;
-        }
+    one_cube(source, budget, gpu, &mut within)?;
+    for megabytes in budget.sizes() {
+        probes(source, megabytes, &mut within)?;
     }
     for preset in [Preset::Small, Preset::Paper] {
-        slabs(source, budget.folder, preset, gpu, &mut within)?;
+        slabs(source, budget, preset, gpu, &mut within)?;
     }
-    for megabytes in [3.1, 12.6, 50.0] {
-        if megabytes * 1e6 <= budget.bytes as f64 {
-            guided(source, megabytes, &mut within)?;
-        }
+    for megabytes in budget.sizes() {
+        guided(source, megabytes, &mut within)?;
     }
     Ok(())
 }
 
 /// Everything that one cube map at the cell's centre can do, with and without its depths.
-fn one_cube(source: &Source, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
-    let start = Instant::now();
-    let (packed, cube) = capture(source, Vec3::ZERO, CUBE, 2)?;
+fn one_cube(source: &Source, budget: &Budget<'_>, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
+    let (start, edge) = (Instant::now(), cube_size(budget.bytes as f64).min(CUBE));
+    let (packed, cube) = capture(source, Vec3::ZERO, edge, 2)?;
     let preparation_s = start.elapsed().as_secs_f64();
     let picture: usize = packed.radiance().iter().map(Vec::len).sum();
     let map = CubeField::new(cube.radiance());
@@ -93,19 +104,32 @@ fn one_cube(source: &Source, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<(
         let drawn = Drawn::OnCpu(environment);
         each(&Contender { name, parameters, bytes: bytes as u64, on_disk: None, preparation_s, drawn })
     };
-    let size = format!("{CUBE}², BC1");
+    let size = format!("{edge}², BC1");
     hand(lf_report::BASELINE_METHOD, size.clone(), picture, &map)?;
-    hand("sphere-projected map", size.clone(), picture, &SphereCube::new(map.clone(), Vec3::ZERO, cube.median_distance()))?;
+    hand(
+        "sphere-projected map",
+        size.clone(),
+        picture,
+        &SphereCube::new(map.clone(), Vec3::ZERO, cube.median_distance()),
+    )?;
     hand("box-projected map", size.clone(), picture, &BoxCube::new(map, Vec3::ZERO, cube.median_box()))?;
-    for (search, steps) in [(Search::FixedPoint(FIXED_POINT), "fixed point, 4 steps"), (MARCH, "64 steps, 6 halvings")] {
+    for (search, steps) in SEARCHES {
         let field = DistanceField::new(cube.clone(), search);
         hand("distance cube", format!("{size}, depth blocks; {steps}"), packed.bytes(), &field)?;
     }
-    if let Some(gpu) = gpu {
-        let pass = ReflectionPass::environment(gpu, cube.radiance())?;
-        let (name, parameters) = (lf_report::BASELINE_METHOD, format!("{CUBE}², RGBA8"));
-        let (bytes, drawn) = (24 * u64::from(CUBE).pow(2), Drawn::OnGpu(gpu, &pass));
-        each(&Contender { name, parameters, bytes, on_disk: None, preparation_s, drawn })?;
+    let Some(gpu) = gpu else { return Ok(()) };
+    let mut hand = |name, parameters: String, texel_bytes: u64, pass: Result<ReflectionPass, GpuError>| {
+        let (bytes, pass) = (6 * texel_bytes * u64::from(edge).pow(2), pass?);
+        each(&Contender { name, parameters, bytes, on_disk: None, preparation_s, drawn: Drawn::OnGpu(gpu, &pass) })
+    };
+    let (map, size) = (cube.radiance(), format!("{edge}², RGBA8"));
+    let proxy = |proxy| ReflectionPass::proxy(gpu, map, Vec3::ZERO, proxy);
+    hand(lf_report::BASELINE_METHOD, size.clone(), 4, ReflectionPass::environment(gpu, map))?;
+    hand("sphere-projected map", size.clone(), 4, proxy(Proxy::Sphere(cube.median_distance())))?;
+    hand("box-projected map", size.clone(), 4, proxy(Proxy::Box(cube.median_box())))?;
+    for (search, steps) in ON_GPU {
+        let pass = ReflectionPass::distance_cube(gpu, &cube, search);
+        hand("distance cube", format!("{size}, R16F depths; {steps}"), 6, pass)?;
     }
     Ok(())
 }
@@ -143,7 +167,10 @@ fn guided(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
     let field = GuidedField::new(set.cubes, guide)?;
     each(&Contender {
         name: "guided cubes (ours)",
-        parameters: format!("5 × {}², BC1, depth blocks; guide {cameras}²×{resolution}²; rays a texel: {}", set.size, set.rays),
+        parameters: format!(
+            "5 × {}², BC1, depth blocks; guide {cameras}²×{resolution}²; rays a texel: {}",
+            set.size, set.rays
+        ),
         bytes: set.bytes + guide_bytes,
         on_disk: None,
         preparation_s: guide_s + set.preparation_s,
@@ -152,12 +179,17 @@ fn guided(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
 }
 
 /// Slabs of a preset, on the CPU and in every form that the device can hold.
-fn slabs(source: &Source, folder: &Path, preset: Preset, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
+fn slabs(source: &Source, budget: &Budget<'_>, preset: Preset, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
     let sampling = preset.sampling();
-    let file = folder.join(format!("{}-{}.lfslab", source.name(), preset.name()));
+    let geometry =
+        LightFieldGeometry::around_with(source.cell, sampling.placement, sampling.cameras, sampling.resolution)?;
+    let texels: u64 = geometry.slabs().iter().map(|slab| Coverage::of_cell(slab, &source.cell).texels()).sum();
+    if texels / 2 > budget.bytes {
+        return Ok(());
+    }
+    let file = budget.folder.join(format!("{}-{}.lfslab", source.name(), preset.name()));
     let encoding = lf_format::TexelEncoding::Bc1;
-    let options =
-        Options { grid: sampling.grid, encoding, pack: PackOptions::default(), whole: false, depth: false };
+    let options = Options { grid: sampling.grid, encoding, pack: PackOptions::default(), whole: false, depth: false };
     let captured = capture_to(source, &sampling, options, &file)?;
     let field = load(&FileArgs::new(&file))?;
     let size = format!("6 × {0}² × {1}²", sampling.cameras[0], sampling.resolution[0]);
@@ -197,14 +229,18 @@ struct CubeSet {
 
 impl CubeSet {
     fn capture(source: &Source, places: &[Vec3], bytes: f64, grid: u32) -> Result<Self> {
-        // Half a byte a texel for its colour, 20/64 for its depth; blocks of colour are 4 texels wide.
-        let size = (bytes / (6.0 * places.len() as f64 * (0.5 + 20.0 / 64.0))).sqrt() as u32 / 8 * 8;
-        let start = Instant::now();
+        let (start, size) = (Instant::now(), cube_size(bytes / places.len() as f64));
         let made = places.iter().map(|&place| capture(source, place, size, grid)).collect::<Result<Vec<_>>>()?;
         let (packed, cubes): (Vec<_>, Vec<_>) = made.into_iter().unzip();
         let bytes = packed.iter().map(|cube: &PackedCube| cube.bytes() as u64).sum();
         Ok(Self { cubes, size, rays: grid * grid, bytes, preparation_s: start.elapsed().as_secs_f64() })
     }
+}
+
+/// Texels along the edge of the largest cube of so many bytes: half a byte a texel for its colour, 20/64 for its depth. Blocks are at
+/// most 8 texels wide.
+fn cube_size(bytes: f64) -> u32 {
+    ((bytes / (6.0 * (0.5 + 20.0 / 64.0))).sqrt() as u32 / 8 * 8).max(8)
 }
 
 /// A cube as the device holds it, and decoded again.

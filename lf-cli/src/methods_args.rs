@@ -17,7 +17,7 @@ pub(crate) struct MethodsArgs {
     #[command(flatten)]
     pub(crate) light: LightArgs,
     /// Only methods that need at most this much of the device, in MB
-    #[arg(long, value_name = "MB", default_value_t = 60.0)]
+    #[arg(long, value_name = "MB", default_value_t = 60.0, value_parser = budget)]
     pub(crate) budget: f64,
     /// Width and height of the pictures in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(16..=4096))]
@@ -29,4 +29,9 @@ pub(crate) struct MethodsArgs {
     /// Do not use a GPU even if there is one
     #[arg(long)]
     pub(crate) cpu: bool,
+}
+
+fn budget(text: &str) -> Result<f64, String> {
+    let parsed = text.trim().parse().ok().filter(|megabytes| (0.5..=4000.0).contains(megabytes));
+    parsed.ok_or_else(|| "expected a number from 0.5 to 4000".to_owned())
 }

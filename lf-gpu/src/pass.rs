@@ -1,9 +1,9 @@
 //! The passes that draw a mirror.
 
 use glam::Vec3;
-use lf_math::{CubeMap, Pinhole, TriangleMesh, near_plane};
-use wgpu::util::DeviceExt;
+use lf_math::{Pinhole, TriangleMesh, near_plane};
 
+use crate::cubes::CubeShader;
 use crate::error::GpuError;
 use crate::gpu::Gpu;
 use crate::storage::{SlabTexture, Storage};
@@ -34,24 +34,35 @@ pub(crate) struct SlabShader {
     pub(crate) cropped: bool,
 }
 
-/// The whole shader: with slabs, or with an environment map.
-pub(crate) fn shader_source(slabs: Option<SlabShader>, probe: bool) -> String {
-    let mut source = String::new();
-    match slabs {
-        None => source += include_str!("shaders/environment.wgsl"),
-        Some(SlabShader { storage, cropped }) => {
-            source += include_str!("shaders/slabs.wgsl");
-            source += match storage {
-                Storage::Bc1Volume => include_str!("shaders/volume.wgsl"),
-                Storage::Bc1Array | Storage::Rgba8Array | Storage::Rgba16FArray => include_str!("shaders/array.wgsl"),
-            };
-            source += if cropped { include_str!("shaders/cropped.wgsl") } else { include_str!("shaders/whole.wgsl") };
-            source += match storage {
-                Storage::Rgba16FArray => include_str!("shaders/linear.wgsl"),
-                _ => include_str!("shaders/srgb.wgsl"),
-            };
-        }
+/// What a mirror shows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Shader {
+    Slabs(SlabShader),
+    Cube(CubeShader),
+}
+
+impl SlabShader {
+    fn source(self) -> String {
+        let storage = match self.storage {
+            Storage::Bc1Volume => include_str!("shaders/volume.wgsl"),
+            Storage::Bc1Array | Storage::Rgba8Array | Storage::Rgba16FArray => include_str!("shaders/array.wgsl"),
+        };
+        let texels = match self.storage {
+            Storage::Rgba16FArray => include_str!("shaders/linear.wgsl"),
+            _ => include_str!("shaders/srgb.wgsl"),
+        };
+        let windows =
+            if self.cropped { include_str!("shaders/cropped.wgsl") } else { include_str!("shaders/whole.wgsl") };
+        [include_str!("shaders/slabs.wgsl"), storage, windows, texels].concat()
     }
+}
+
+/// The whole shader.
+pub(crate) fn shader_source(shader: Shader, probe: bool) -> String {
+    let mut source = match shader {
+        Shader::Slabs(slabs) => slabs.source(),
+        Shader::Cube(cube) => cube.source(),
+    };
     source += include_str!("shaders/reflect.wgsl");
     if probe {
         source += &format!("const PROBES_PER_ROW = {}u;\n", crate::probe::PER_ROW);
@@ -109,26 +120,12 @@ impl ReflectionPass {
         gpu.checked("the slab pipeline", || {
             let sampler = bilinear_sampler(gpu);
             let resources = texture.bindings(&sampler);
-            Self::new(gpu, &shader_source(Some(texture.shader()), false), &resources)
-        })
-    }
-
-    /// Reflections from an environment map.
-    ///
-    /// # Errors
-    /// If the device refuses the cube texture or the pipeline.
-    pub fn environment(gpu: &Gpu, cube: &CubeMap) -> Result<Self, GpuError> {
-        gpu.checked("the environment pipeline", || {
-            let view = cube_texture(gpu, cube);
-            let sampler = bilinear_sampler(gpu);
-            let resources =
-                [(1, wgpu::BindingResource::TextureView(&view)), (2, wgpu::BindingResource::Sampler(&sampler))];
-            Self::new(gpu, &shader_source(None, false), &resources)
+            Self::new(gpu, &shader_source(Shader::Slabs(texture.shader()), false), &resources)
         })
     }
 
     /// `resources` are the environment's, beside the frame's uniform at binding 0.
-    fn new(gpu: &Gpu, source: &str, resources: &[(u32, wgpu::BindingResource<'_>)]) -> Self {
+    pub(crate) fn new(gpu: &Gpu, source: &str, resources: &[(u32, wgpu::BindingResource<'_>)]) -> Self {
         let pipeline = mirror_pipeline(gpu, source);
         let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
@@ -247,23 +244,4 @@ pub(crate) fn bind_group<'a>(
         layout: &pipeline.get_bind_group_layout(0),
         entries: &entries,
     })
-}
-
-fn cube_texture(gpu: &Gpu, cube: &CubeMap) -> wgpu::TextureView {
-    let texels: Vec<[u8; 4]> = cube.faces().iter().flat_map(lf_math::Image::texels).copied().collect();
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("environment map"),
-        size: wgpu::Extent3d { width: cube.size(), height: cube.size(), depth_or_array_layers: 6 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8Unorm,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    let bytes = bytemuck::cast_slice(&texels);
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
-    let dimension = Some(wgpu::TextureViewDimension::Cube);
-    texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
 }

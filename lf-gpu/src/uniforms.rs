@@ -103,7 +103,8 @@ mod tests {
     use super::*;
     use std::mem::{offset_of, size_of};
 
-    use crate::pass::{SlabShader, shader_source};
+    use crate::cubes::{CubeShader, CubeUniform};
+    use crate::pass::{Shader, SlabShader, shader_source};
     use crate::storage::Storage;
 
     /// Offsets of a WGSL struct's members and its size, as naga lays it out.
@@ -120,11 +121,11 @@ mod tests {
     #[test]
     fn every_shader_is_valid() {
         use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
-        let variants = Storage::ALL
+        let slabs = Storage::ALL
             .into_iter()
-            .flat_map(|storage| [false, true].map(|cropped| Some(SlabShader { storage, cropped })));
-        for shader in variants.chain([None]) {
-            for probe in [false, shader.is_some()] {
+            .flat_map(|storage| [false, true].map(|cropped| Shader::Slabs(SlabShader { storage, cropped })));
+        for shader in slabs.chain(CubeShader::ALL.map(Shader::Cube)) {
+            for probe in [false, matches!(shader, Shader::Slabs(_))] {
                 let module = parsed(&shader_source(shader, probe));
                 Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).expect("valid");
             }
@@ -140,7 +141,8 @@ mod tests {
 
     #[test]
     fn rust_and_wgsl_agree_on_every_offset() {
-        let module = parsed(&shader_source(Some(SlabShader { storage: Storage::Bc1Volume, cropped: true }), true));
+        let slabs = SlabShader { storage: Storage::Bc1Volume, cropped: true };
+        let module = parsed(&shader_source(Shader::Slabs(slabs), true));
         same_layout!(&module, "Frame", FrameUniform, clip_from_cell, eye, padding);
         same_layout!(
             &module,
@@ -164,5 +166,7 @@ mod tests {
         );
         same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, faces);
         same_layout!(&module, "Probe", ProbeUniform, uv, camera, face, padding);
+        let module = parsed(&shader_source(Shader::Cube(CubeShader::March), false));
+        same_layout!(&module, "Cube", CubeUniform, center, radius, low, near, high, far, steps, halvings, padding);
     }
 }

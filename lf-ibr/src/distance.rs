@@ -67,11 +67,9 @@ impl LitCube {
 
 /// Ways along rays within which they end: half of the least depth of any cube to four times the largest that is not infinite.
 pub(crate) fn span<'a>(cubes: impl Iterator<Item = &'a DistanceCube>) -> [f32; 2] {
-    let inverses = cubes.flat_map(|cube| cube.inverse_depths().iter().flat_map(|face| face.texels()));
-    let met = inverses.copied().filter(|inverse| *inverse > 0.0);
-    let [least, largest] = met
-        .fold([f32::INFINITY, 0.0], |[least, largest]: [f32; 2], inverse| [least.min(inverse), largest.max(inverse)]);
-    if largest == 0.0 { [1.0, 2.0] } else { [0.5 / largest, 4.0 / least] }
+    let all = cubes.filter_map(DistanceCube::depth_range);
+    let [least, largest] = all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([2.0, 0.5]);
+    [0.5 * least, 4.0 * largest]
 }
 
 impl DistanceField {

@@ -5,7 +5,10 @@
 //! [`Environment`] for the light along it:
 //!
 //! * [`SlabField`]: light field slabs, four bilinear fetches blended (Figs. 6 and 8 of the paper);
-//! * [`CubeField`]: an environment map, looked up by direction alone.
+//! * [`CubeField`]: an environment map, looked up by direction alone;
+//! * [`SphereCube`], [`BoxCube`]: the same on a sphere or a box that stands for the scene;
+//! * [`DistanceField`]: a cube that knows how far everything is; [`ProbeField`]: several of them;
+//! * [`GuidedField`]: a few sharp distance cubes and a small light field of depths that says where to look in them.
 //!
 //! Colours are interpolated as they are stored, sRGB-encoded, as the paper's hardware did and as the GPU passes do.
 

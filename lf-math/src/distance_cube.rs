@@ -100,6 +100,14 @@ impl DistanceCube {
         Some((face, uv * self.depth_size() as f32 - 0.5))
     }
 
+    /// The least and the largest depth of what is seen, metres along the axes of the faces; `None` if that is nothing.
+    #[must_use]
+    pub fn depth_range(&self) -> Option<[f32; 2]> {
+        let met = self.inverse_depths.iter().flat_map(Image::texels).filter(|inverse| **inverse > 0.0);
+        let range = met.map(|inverse| [inverse.recip(); 2]);
+        range.reduce(|[least, largest], [depth, _]| [least.min(depth), largest.max(depth)])
+    }
+
     /// A box around what is seen, cell space: on each of its six sides the median of where the face's rays end, which may be infinitely
     /// far. It is what a person would set as the room's walls; a mean or an extreme would follow single things.
     #[must_use]
@@ -207,6 +215,13 @@ mod tests {
     }
 
     #[test]
+    fn depths_lie_between_the_nearest_wall_and_the_farthest() {
+        // An even number of texels has none in the middle: corners are as deep as the wall they are on.
+        let [least, largest] = room(Vec3::ZERO, [Vec3::splat(-2.0), Vec3::splat(4.0)], 16).depth_range().unwrap();
+        assert!((least - 2.0).abs() < 1e-5 && (largest - 4.0).abs() < 1e-5, "{least} {largest}");
+    }
+
+    #[test]
     fn the_median_distance_lies_between_wall_and_corner() {
         let distance = room(Vec3::ZERO, [Vec3::splat(-2.0), Vec3::splat(2.0)], 32).median_distance();
         assert!((2.0..2.0 * 3.0f32.sqrt()).contains(&distance), "{distance}");
@@ -221,6 +236,7 @@ mod tests {
         assert!(DistanceCube::new(Vec3::NAN, black(), faces(1.0)).is_err());
         let far = DistanceCube::new(Vec3::ZERO, black(), faces(0.0)).unwrap();
         assert_eq!((far.relative_depth(Vec3::X), far.median_distance()), (0.0, f32::INFINITY));
+        assert_eq!(far.depth_range(), None);
         let mut uneven = faces(1.0);
         uneven[3] = Image::filled(2, 3, 1.0);
         assert!(DistanceCube::new(Vec3::ZERO, black(), uneven).is_err());

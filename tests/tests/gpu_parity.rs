@@ -3,10 +3,13 @@
 use glam::Vec3;
 use half::f16;
 use lf_compress::PackedLightField;
-use lf_gpu::{Gpu, MirrorMesh, ReflectionPass, SlabTexture, Storage, Target};
-use lf_ibr::{CubeField, Environment, GBuffer, SlabField, Texel, reflect_frame};
-use lf_math::{Coverage, Image, Pinhole, Slab, SlabTexels, TriangleMesh, linear_from_srgb};
-use lf_scene::{capture_cube, museum, reflectors};
+use lf_gpu::{Gpu, MirrorMesh, Proxy, ReflectionPass, Search, SlabTexture, Storage, Target};
+use lf_ibr::{
+    BoxCube, CubeField, DistanceField, Environment, GBuffer, Search as TwinSearch, SlabField, SphereCube, Texel,
+    reflect_frame,
+};
+use lf_math::{Coverage, DistanceCube, Image, Pinhole, Slab, SlabTexels, TriangleMesh, linear_from_srgb};
+use lf_scene::{capture_cube, capture_distance_cube, museum, reflectors};
 use lf_tests::{capture, gpu, museum, packed};
 
 const SIZE: u32 = 512;
@@ -151,4 +154,35 @@ fn environment_maps_agree_within_two_steps_on_999_of_1000_pixels() {
     let cube = capture_cube(&tracer, &museum::cell(), 128, 2).expect("a cube map");
     let pass = ReflectionPass::environment(&gpu, &cube).expect("a pass");
     compare(&gpu, "environment map", &pass, &CubeField::new(&cube), 0.998);
+}
+
+/// A distance cube off the cell's centre, its depths half floats, as the device has them.
+fn distance_cube() -> DistanceCube {
+    let at = Vec3::new(0.1, -0.2, 0.15);
+    let cube = capture_distance_cube(&museum(), &museum::cell(), at, [128, 256], 2).expect("a cube");
+    let half = |face: Image<f32>| face.map(|inverse: f32| f16::from_f32(inverse).to_f32());
+    DistanceCube::new(at, cube.radiance().clone(), cube.inverse_depths().clone().map(half)).expect("a cube")
+}
+
+#[test]
+fn projected_maps_agree_within_two_steps_on_999_of_1000_pixels() {
+    let (gpu, cube) = (gpu(), distance_cube());
+    let (map, center) = (CubeField::new(cube.radiance()), cube.position());
+    let sphere = ReflectionPass::proxy(&gpu, cube.radiance(), center, Proxy::Sphere(3.0)).expect("a pass");
+    compare(&gpu, "sphere-projected map", &sphere, &SphereCube::new(map.clone(), center, 3.0), 0.998);
+    let corners = cube.median_box();
+    let walls = ReflectionPass::proxy(&gpu, cube.radiance(), center, Proxy::Box(corners)).expect("a pass");
+    compare(&gpu, "box-projected map", &walls, &BoxCube::new(map, center, corners), 0.998);
+}
+
+/// A search is a chain of decisions; where one falls the other way the picture jumps. Those are few.
+#[test]
+fn distance_cubes_agree_within_two_steps_on_999_of_1000_pixels() {
+    let (gpu, cube) = (gpu(), distance_cube());
+    let pass = ReflectionPass::distance_cube(&gpu, &cube, Search::FixedPoint(4)).expect("a pass");
+    let twin = DistanceField::new(cube.clone(), TwinSearch::FixedPoint(4));
+    compare(&gpu, "distance cube, fixed point", &pass, &twin, 0.99);
+    let pass = ReflectionPass::distance_cube(&gpu, &cube, Search::March { steps: 48, halvings: 6 }).expect("a pass");
+    let twin = DistanceField::new(cube, TwinSearch::March { steps: 48, halvings: 6 });
+    compare(&gpu, "distance cube, march", &pass, &twin, 0.99);
 }
