@@ -13,9 +13,9 @@ use lf_compress::bc1::Quality;
 use lf_compress::{PackOptions, PackedCube, PackedLightField};
 use lf_gpu::{Gpu, GpuError, Proxy, ReflectionPass, SlabTexture, Storage};
 use lf_ibr::{
-    BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, Search, SlabField, SphereCube,
+    BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, SlabField, SphereCube,
 };
-use lf_math::{Coverage, DistanceCube, LightFieldGeometry, PlanePlacement};
+use lf_math::{Coverage, DistanceCube, LightFieldGeometry, PlanePlacement, Search};
 use lf_scene::{capture_distance_cube, capture_inverse_depths, focus};
 
 use crate::args::{FileArgs, Preset};
@@ -30,9 +30,6 @@ const SEARCHES: [(Search, &str); 2] = [
     (Search::FixedPoint(4), "fixed point, 4 steps"),
     (Search::March { steps: 64, halvings: 6 }, "64 steps, 6 halvings"),
 ];
-/// The same on the GPU.
-const ON_GPU: [(lf_gpu::Search, &str); 2] =
-    [(lf_gpu::Search::FixedPoint(4), SEARCHES[0].1), (lf_gpu::Search::March { steps: 64, halvings: 6 }, SEARCHES[1].1)];
 /// Eight probes stand at the corners of a cube this large, of the cell's size.
 const PROBES_AT: f32 = 0.7;
 /// One of the guided cubes stands in the middle, four at corners of a cube this large.
@@ -127,7 +124,7 @@ fn one_cube(source: &Source, budget: &Budget<'_>, gpu: Option<&Gpu>, each: &mut 
     hand(lf_report::BASELINE_METHOD, size.clone(), 4, ReflectionPass::environment(gpu, map))?;
     hand("sphere-projected map", size.clone(), 4, proxy(Proxy::Sphere(cube.median_distance())))?;
     hand("box-projected map", size.clone(), 4, proxy(Proxy::Box(cube.median_box())))?;
-    for (search, steps) in ON_GPU {
+    for (search, steps) in SEARCHES {
         let pass = ReflectionPass::distance_cube(gpu, &cube, search);
         hand("distance cube", format!("{size}, R16F depths; {steps}"), 6, pass)?;
     }

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use half::f16;
-use lf_math::{CubeMap, DistanceCube, Image};
+use lf_math::{CubeMap, DistanceCube, Image, Search};
 use wgpu::util::DeviceExt;
 
 use crate::error::GpuError;
@@ -17,20 +17,6 @@ pub enum Proxy {
     Sphere(f32),
     /// The box between its least and greatest corner.
     Box([Vec3; 2]),
-}
-
-/// How the end of a ray is looked for in a distance cube.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Search {
-    /// So many steps of the fixed point.
-    FixedPoint(u32),
-    /// So many steps along the ray, then so many halvings.
-    March {
-        /// Steps from half of the least depth to four times the largest, even in the inverse.
-        steps: u32,
-        /// Halvings of the step in which it ends.
-        halvings: u32,
-    },
 }
 
 /// A variant of the cube shader.

@@ -4,7 +4,7 @@
 //! of BC1 blocks where the device samples that, else as a 2D array, else as plain RGBA ([`Storage`]); a
 //! [`ReflectionPass`] draws a [`MirrorMesh`] into a [`Target`]. One pass, four hardware-bilinear fetches a pixel, for the
 //! slabs (Figs. 6 and 8 of Yu, Yang & McMillan); one fetch for the environment map, also where it is projected on a sphere or a box
-//! ([`Proxy`]); a distance cube takes a fetch for each step of its [`Search`].
+//! ([`Proxy`]); a distance cube takes a fetch for each step of its [`lf_math::Search`].
 //!
 //! Every shader has a readable twin in `lf-ibr`. Cost is the covered pixels times the fetches; the scene and, but for its
 //! vertices, the mirror do not matter. Windows and animation are not this crate's job.
@@ -21,7 +21,7 @@ mod target;
 mod uniforms;
 mod windows;
 
-pub use cubes::{Proxy, Search};
+pub use cubes::Proxy;
 pub use error::GpuError;
 pub use gpu::{Gpu, adapter_lines};
 pub use pass::{MirrorMesh, ReflectionPass};

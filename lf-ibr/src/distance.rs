@@ -1,7 +1,7 @@
 //! Reflections from distance cubes: one, or several that fill each other's gaps.
 
 use glam::Vec3;
-use lf_math::{DistanceCube, GeometryError, Ray, normalized};
+use lf_math::{DistanceCube, GeometryError, Ray, Search, normalized};
 
 use crate::cube::CubeField;
 use crate::frame::Environment;
@@ -17,21 +17,6 @@ const THICKNESS: f32 = 0.03;
 pub(crate) struct LitCube {
     pub(crate) distances: DistanceCube,
     pub(crate) colors: CubeField,
-}
-
-/// How the end of a ray is looked for in one distance cube.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Search {
-    /// So many steps of the fixed point: the ray meets a sphere as far away as what the cube shows where it met the last one
-    /// (Szirmay-Kalos et al. 2005). Cheap; goes astray where the distance jumps.
-    FixedPoint(u32),
-    /// So many steps along the ray, then so many halvings (Umenhoffer et al. 2007).
-    March {
-        /// Steps from half of the least depth to four times the largest, even in the inverse.
-        steps: u32,
-        /// Halvings of the step in which it ends.
-        halvings: u32,
-    },
 }
 
 /// Reflections from one distance cube.

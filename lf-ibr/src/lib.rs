@@ -27,7 +27,7 @@ mod slabs;
 mod texel;
 
 pub use cube::CubeField;
-pub use distance::{DistanceField, ProbeField, Search};
+pub use distance::{DistanceField, ProbeField};
 pub use frame::{Environment, reflect_frame};
 pub use gbuffer::{Fragment, GBuffer};
 pub use guide::DepthGuide;

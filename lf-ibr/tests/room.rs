@@ -1,9 +1,9 @@
 //! All methods in a room with a ball, whose every ray has a closed form.
 
 use glam::{DVec3, Vec2, Vec3};
-use lf_ibr::{BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, Search, SphereCube};
+use lf_ibr::{BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, SphereCube};
 use lf_math::{
-    Cell, CubeCoord, CubeMap, DistanceCube, Face, Image, LightFieldGeometry, PlanePlacement, Ray, SlabTexels,
+    Cell, CubeCoord, CubeMap, DistanceCube, Face, Image, LightFieldGeometry, PlanePlacement, Ray, Search, SlabTexels,
     cube_direction,
 };
 

@@ -20,6 +20,21 @@ pub struct DistanceCube {
     inverse_depths: [Image<f32>; 6],
 }
 
+/// How the end of a ray is looked for in a distance cube.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Search {
+    /// So many steps of the fixed point: the ray meets a sphere as far away as what the cube shows where it met the last one
+    /// (Szirmay-Kalos et al. 2005). Cheap; goes astray where the distance jumps.
+    FixedPoint(u32),
+    /// So many steps along the ray, then so many halvings (Umenhoffer et al. 2007).
+    March {
+        /// Steps from half of the least depth to four times the largest, even in the inverse.
+        steps: u32,
+        /// Halvings of the step in which it ends.
+        halvings: u32,
+    },
+}
+
 impl DistanceCube {
     /// A cube seen from a point of cell space, with the inverse depth that the ray through each texel's middle meets.
     ///

@@ -42,7 +42,7 @@ pub use cell::Cell;
 pub use color::{linear_from_srgb, srgb_from_linear, srgb8_from_linear};
 pub use coverage::Coverage;
 pub use cube::{CubeCoord, CubeMap, cube_coord, cube_direction};
-pub use distance_cube::DistanceCube;
+pub use distance_cube::{DistanceCube, Search};
 pub use error::GeometryError;
 pub use face::Face;
 pub use geometry::{IndexedRay, LightFieldGeometry, PlanePlacement};
