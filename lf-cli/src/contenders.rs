@@ -25,7 +25,8 @@ use crate::sources::Source;
 
 /// Texels along the edge of a single cube's faces.
 const CUBE: u32 = 1024;
-/// Steps of the searches in distance cubes; more gain less than a tenth of a decibel in the museum, fewer lose more.
+/// Steps of the searches in distance cubes. In the museum more of the fixed point gain a few hundredths of a decibel; twice as many along
+/// the ray are worth about half a decibel to eight cubes, and take half as long again.
 const SEARCHES: [(Search, &str); 2] = [
     (Search::FixedPoint(4), "fixed point, 4 steps"),
     (Search::March { steps: 64, halvings: 6 }, "64 steps, 6 halvings"),
