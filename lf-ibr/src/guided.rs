@@ -55,11 +55,11 @@ impl GuidedField {
     /// # Errors
     /// There must be at least one cube.
     pub fn new(cubes: Vec<DistanceCube>, guide: DepthGuide) -> Result<Self, GeometryError> {
-        let Some(first) = cubes.first() else { return Err(GeometryError::ZeroCount { what: "number of cubes" }) };
+        let sizes = cubes.iter().map(DistanceCube::depth_size);
+        let texels = sizes.max().ok_or(GeometryError::ZeroCount { what: "number of cubes" })?;
         // Rays start anywhere in the cell, at most this far from a cube.
         let reach = |cube: &DistanceCube| (cube.position().abs() + guide.geometry().cell().half_extent()).length();
         let apart = cubes.iter().map(reach).fold(0.0, f32::max);
-        let texels = cubes.iter().map(DistanceCube::depth_size).max().unwrap_or(first.depth_size());
         let [_, far] = span(cubes.iter());
         Ok(Self {
             parallax: 0.5 * apart * texels as f32,

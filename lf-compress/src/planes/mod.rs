@@ -11,6 +11,7 @@
 mod fit;
 
 use half::f16;
+use rayon::prelude::*;
 
 use fit::fit_block;
 
@@ -97,7 +98,6 @@ impl PlaneImage {
             let size = [width as usize - corner[0], height as usize - corner[1]].map(|rest| rest.min(BLOCK_EDGE));
             fit_block(size, |x, y| image(corner[0] + x, corner[1] + y))
         };
-        use rayon::prelude::*;
         let blocks = (0..across * down).into_par_iter().map(block).collect();
         Some(Self { width, height, scale, blocks })
     }
