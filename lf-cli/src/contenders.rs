@@ -94,7 +94,8 @@ pub(crate) fn contenders(source: &Source, budget: &Budget<'_>, gpu: Option<&Gpu>
 /// Everything that one cube map at the cell's centre can do, with and without its depths.
 fn one_cube(source: &Source, budget: &Budget<'_>, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
     let (start, edge) = (Instant::now(), cube_size(budget.bytes as f64).min(CUBE));
-    let (packed, cube) = capture(source, Vec3::ZERO, edge, 2)?;
+    let packed = capture(source, Vec3::ZERO, edge, 2)?;
+    let cube = packed.decode()?;
     let preparation_s = start.elapsed().as_secs_f64();
     let picture: usize = packed.radiance().iter().map(Vec::len).sum();
     let map = CubeField::new(cube.radiance());
@@ -139,7 +140,7 @@ fn probes(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
     // From this many bytes on one ray a texel is traced, not four: that would take minutes.
     let grid = if megabytes > 20.0 { 1 } else { 2 };
     let set = CubeSet::capture(source, &places.collect::<Vec<_>>(), megabytes * 1e6, grid)?;
-    let field = ProbeField::new(set.cubes, 64, 6)?;
+    let field = ProbeField::new(set.decode()?, 64, 6)?;
     each(&Contender {
         name: "8 distance cubes",
         parameters: format!("{}², BC1, depth blocks; 64 steps, 6 halvings; rays a texel: {}", set.size, set.rays),
@@ -162,7 +163,7 @@ fn guided(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
     let corners = [[0.0; 3], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     let places = corners.map(|corner| GUIDED_AT * Vec3::from(corner) * source.cell.half_extent());
     let set = CubeSet::capture(source, &places, megabytes * 1e6 - guide_bytes as f64, GUIDED_GRID)?;
-    let field = GuidedField::new(set.cubes, guide)?;
+    let field = GuidedField::new(&set.cubes, guide)?;
     each(&Contender {
         name: "guided cubes (ours)",
         parameters: format!(
@@ -218,7 +219,7 @@ fn blocks(field: &PackedLightField) -> u64 {
 
 /// Distance cubes of a total size.
 struct CubeSet {
-    cubes: Vec<DistanceCube>,
+    cubes: Vec<PackedCube>,
     size: u32,
     rays: u32,
     bytes: u64,
@@ -228,10 +229,13 @@ struct CubeSet {
 impl CubeSet {
     fn capture(source: &Source, places: &[Vec3], bytes: f64, grid: u32) -> Result<Self> {
         let (start, size) = (Instant::now(), cube_size(bytes / places.len() as f64));
-        let made = places.iter().map(|&place| capture(source, place, size, grid)).collect::<Result<Vec<_>>>()?;
-        let (packed, cubes): (Vec<_>, Vec<_>) = made.into_iter().unzip();
-        let bytes = packed.iter().map(|cube: &PackedCube| cube.bytes() as u64).sum();
+        let cubes = places.iter().map(|&place| capture(source, place, size, grid)).collect::<Result<Vec<_>>>()?;
+        let bytes = cubes.iter().map(|cube| cube.bytes() as u64).sum();
         Ok(Self { cubes, size, rays: grid * grid, bytes, preparation_s: start.elapsed().as_secs_f64() })
+    }
+
+    fn decode(&self) -> Result<Vec<DistanceCube>> {
+        Ok(self.cubes.iter().map(PackedCube::decode).collect::<Result<_, _>>()?)
     }
 }
 
@@ -241,10 +245,8 @@ fn cube_size(bytes: f64) -> u32 {
     ((bytes / (6.0 * (0.5 + 20.0 / 64.0))).sqrt() as u32 / 8 * 8).max(8)
 }
 
-/// A cube as the device holds it, and decoded again.
-fn capture(source: &Source, place: Vec3, size: u32, grid: u32) -> Result<(PackedCube, DistanceCube)> {
+/// A cube as the device holds it.
+fn capture(source: &Source, place: Vec3, size: u32, grid: u32) -> Result<PackedCube> {
     let cube = capture_distance_cube(&source.tracer, &source.cell, place, [size; 2], grid)?;
-    let packed = PackedCube::encode(&cube, Quality::High)?;
-    let decoded = packed.decode()?;
-    Ok((packed, decoded))
+    Ok(PackedCube::encode(&cube, Quality::High)?)
 }

@@ -58,6 +58,13 @@ impl PackedCube {
         &self.inverse_depths
     }
 
+    /// The largest depth of what is seen, metres along the axes of the faces; 0 if that is nothing.
+    #[must_use]
+    pub fn largest_depth(&self) -> f32 {
+        let met = self.inverse_depths.iter().flat_map(PlaneImage::decode).filter(|inverse| *inverse > 0.0);
+        met.fold(f32::INFINITY, f32::min).recip()
+    }
+
     /// Bytes of all blocks.
     #[must_use]
     pub fn bytes(&self) -> usize {

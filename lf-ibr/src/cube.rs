@@ -31,17 +31,6 @@ impl CubeField {
         let position = (coord.uv * self.size as f32 + 0.5).min(Vec2::splat(self.size as f32 + 0.5));
         Some((&self.faces[usize::from(coord.face.index())], position))
     }
-
-    /// The colour in a direction, interpolated more steeply between texels, and how near the direction is to a texel's middle on the
-    /// worse axis: 1 there, 0 half way to the next. Several cubes that see the same place make up for each other's gaps.
-    pub(crate) fn sharp(&self, direction: Vec3) -> Option<(Vec3, f32)> {
-        let (image, position) = self.place(direction)?;
-        let fraction = position - position.floor();
-        let steep = fraction * fraction * (3.0 - 2.0 * fraction);
-        let nearness = (2.0 * fraction - 1.0).abs().min_element();
-        let at = position.floor() + steep;
-        Some((<[u8; 4]>::color(bilinear(at, |x, y| image.get(x as u32, y as u32))), nearness))
-    }
 }
 
 impl Environment for CubeField {

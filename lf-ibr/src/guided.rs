@@ -2,51 +2,55 @@
 //!
 //! The slabs of the paper answer a ray at once, but store each place of the scene many times over, and so few texels of it each time.
 //! A few cubes store it sharply, but do not know which of their texels a ray asks for. Here slabs that hold nothing but
-//! inverse depth, and little of that, say where the ray ends to within a bracket ([`DepthGuide`]); the cubes' own distances narrow it
-//! down to a texel; all cubes that saw the place are blended, each by how near to one of its texels' middles the place falls.
+//! inverse depth, and little of that, say where the ray ends to within a bracket ([`DepthGuide`]). Within it the ray meets planes that
+//! the cubes show, in closed form; the cubes vote on where it ends; and the texels around that place, of all cubes, are blended
+//! by how near to it on the surface they lie.
 
 use glam::Vec3;
-use lf_math::{DistanceCube, GeometryError, Ray, normalized};
+use lf_compress::PackedCube;
+use lf_math::{GeometryError, Ray, normalized};
 
-use crate::distance::{LitCube, span};
 use crate::frame::Environment;
 use crate::guide::DepthGuide;
-use crate::march::{IN_FRONT, crossing};
+use crate::surface::{Blend, SurfaceCube};
 
 /// The bracket reaches this share of the distance from the cell's centre beyond what the guide's texels say: the surface goes on
 /// between them. Less misses surfaces seen at grazing angles, more takes steps.
 const MARGIN: f32 = 0.06;
+/// Where the direction from the cubes farthest apart to a point changes by less than this over the bracket (a tangent), one surface is
+/// expected in it: the plane that is seen from its near end is tried at once. More is faster and passes by the rims of things.
+const SHORT: f32 = 0.35;
 /// Texels of parallax between the cubes that one step of the search may cross: thinner things can be stepped over.
 const STEP_TEXELS: f32 = 4.0;
 /// Bounds of the number of steps.
 const STEPS: [f32; 2] = [2.0, 64.0];
 /// Steps where the guide's bracket holds no end.
 const BLIND_STEPS: u32 = 32;
-/// The search ends when the place moves by less than this, texels.
-const PRECISION_TEXELS: f32 = 0.5;
-/// A cube saw a place if its depth agrees with what the cube shows there within this share. Less loses surfaces at grazing
-/// angles, more blends what is behind edges.
-const AGREEMENT: f32 = 0.02;
-/// Weight of a cube that did not see the place, or of one half way between texels, against 1: something must answer.
-const UNSEEN: f32 = 1e-5;
-const BETWEEN: f32 = 1e-3;
+/// Times that the step in which something is hidden is halved while no place is agreed on.
+const HALVINGS: u32 = 3;
+/// A place is in front of what a cube sees if its relative depth is below 1 by this much: what is closer may be the rounding of depths.
+const IN_FRONT: f32 = 3e-3;
+/// Cubes whose relative depths of a place differ from 1 by this much in all agree on it at once.
+const EXACT: f32 = 1e-3;
+/// A cube sees a place if it is within this share of what it shows there; if it is in front by more, the cube sees past it.
+const SEEN: f32 = 0.01;
+/// A second cube that does not see the place costs no more than this: few places are seen by all.
+const ALONE: f32 = 0.02;
+/// At most the discord that is accepted at last: one cube must see the place well.
+const DISCORD: f32 = ALONE + 5e-3;
+/// What is infinitely far is taken to be at least this many times as far as rays start from cubes: they all see it in one direction.
+const SKY: f32 = 1e3;
 
 /// Reflections from distance cubes and a guide.
 #[derive(Debug, Clone)]
 pub struct GuidedField {
-    cubes: Vec<LitCube>,
+    cubes: Vec<SurfaceCube>,
     guide: DepthGuide,
-    /// Texels of distance per unit of inverse metres that the cubes farthest apart see a point move.
-    parallax: f32,
+    /// The largest distance of a cube from where a ray may start.
+    apart: f32,
+    /// Half of the texels along an edge: those that a tangent of 1 covers.
+    texels: f32,
     far: f32,
-}
-
-impl LitCube {
-    /// Whether it sees past a place. By the nearest thing around: of several cubes one is enough to call a place free, so that things
-    /// would shrink by the rounding of all.
-    fn sees_past(&self, place: Vec3) -> bool {
-        self.distances.largest_relative_depth(place - self.distances.position()) < IN_FRONT
-    }
 }
 
 impl GuidedField {
@@ -54,19 +58,15 @@ impl GuidedField {
     ///
     /// # Errors
     /// There must be at least one cube.
-    pub fn new(cubes: Vec<DistanceCube>, guide: DepthGuide) -> Result<Self, GeometryError> {
-        let sizes = cubes.iter().map(DistanceCube::depth_size);
+    pub fn new(cubes: &[PackedCube], guide: DepthGuide) -> Result<Self, GeometryError> {
+        let sizes = cubes.iter().map(PackedCube::size);
         let texels = sizes.max().ok_or(GeometryError::ZeroCount { what: "number of cubes" })?;
         // Rays start anywhere in the cell, at most this far from a cube.
-        let reach = |cube: &DistanceCube| (cube.position().abs() + guide.geometry().cell().half_extent()).length();
+        let reach = |cube: &PackedCube| (cube.position().abs() + guide.geometry().cell().half_extent()).length();
         let apart = cubes.iter().map(reach).fold(0.0, f32::max);
-        let [_, far] = span(cubes.iter());
-        Ok(Self {
-            parallax: 0.5 * apart * texels as f32,
-            far,
-            cubes: cubes.into_iter().map(LitCube::new).collect(),
-            guide,
-        })
+        let depths = cubes.iter().map(PackedCube::largest_depth).fold(0.0, f32::max);
+        let cubes = cubes.iter().map(SurfaceCube::new).collect();
+        Ok(Self { cubes, apart, texels: 0.5 * texels as f32, far: (4.0 * depths).max(SKY * apart), guide })
     }
 
     /// Where a ray of unit direction ends, cell space.
@@ -74,56 +74,118 @@ impl GuidedField {
         let cell = self.guide.geometry().cell();
         let leave = cell.exit(ray).unwrap_or(0.0).max(1e-3 * cell.half_extent().min_element());
         let far = self.far.max(2.0 * leave);
-        let mut last = 0;
-        let mut free = |point: Vec3| {
-            let count = self.cubes.len();
-            let seeing = (0..count).map(|i| (last + i) % count).find(|&i| self.cubes[i].sees_past(point));
-            last = seeing.unwrap_or(last);
-            seeing.is_some()
-        };
+        let mut search = Search { field: self, ray, seeing: 0 };
         let mut from = leave;
         if let Some([near, end]) = self.guide.ends(ray) {
             let margin = |t: f32| MARGIN * (t + leave);
             let bracket = [(near - margin(near)).clamp(leave, far), (end + margin(end)).clamp(leave, far)];
             // If its near end is not free, what the guide saw is not the first thing on the way.
-            if bracket[0] < bracket[1] && free(ray.at(bracket[0])) {
-                if let Some(found) = self.search(ray, bracket, &mut free) {
+            if bracket[0] < bracket[1] && search.is_free(bracket[0]) {
+                if let Some(found) = search.within(bracket) {
                     return ray.at(found);
                 }
                 from = bracket[1];
             }
         }
-        let blind = [from, far];
-        let halvings = self.halvings(blind, BLIND_STEPS);
-        let found = (from < far).then(|| crossing(ray, blind, BLIND_STEPS, halvings, free)).flatten();
-        ray.at(found.map_or(far, |found| found.hidden))
+        let blind = (from < far).then(|| search.steps([from, far], BLIND_STEPS)).flatten();
+        ray.at(blind.unwrap_or(far))
     }
 
-    fn search(&self, ray: &Ray, bracket: [f32; 2], free: impl FnMut(Vec3) -> bool) -> Option<f32> {
-        let texels = self.parallax * (bracket[0].recip() - bracket[1].recip());
-        let steps = (texels / STEP_TEXELS).ceil().clamp(STEPS[0], STEPS[1]) as u32;
-        crossing(ray, bracket, steps, self.halvings(bracket, steps), free)
-            .map(|found| 0.5 * (found.free + found.hidden))
-    }
-
-    fn halvings(&self, bracket: [f32; 2], steps: u32) -> u32 {
-        let texels = self.parallax * (bracket[0].recip() - bracket[1].recip()) / steps as f32;
-        (texels / PRECISION_TEXELS).max(1.0).log2().ceil().min(16.0) as u32
-    }
-
-    /// The colour of a place by all cubes that saw it.
+    /// The colour of a place by all cubes.
     fn color(&self, place: Vec3) -> Option<Vec3> {
-        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+        let unit = (place - self.cubes[0].position()).abs().max_element();
+        let mut blend = Blend::default();
         for cube in &self.cubes {
-            let away = place - cube.distances.position();
-            let Some((color, nearness)) = cube.colors.sharp(away) else { continue };
-            let off = (cube.distances.relative_depth(away) - 1.0).abs();
-            let agrees = if off < AGREEMENT { 1.0 } else { UNSEEN };
-            let weight = agrees * (nearness * nearness + BETWEEN);
-            sum += weight * color;
-            weights += weight;
+            cube.add_samples(place, self.far, unit, &mut blend);
         }
-        (weights > 0.0).then(|| sum / weights)
+        blend.color()
+    }
+}
+
+/// The search for a ray's end.
+struct Search<'a> {
+    field: &'a GuidedField,
+    ray: &'a Ray,
+    /// The cube that saw past the last point.
+    seeing: usize,
+}
+
+impl Search<'_> {
+    /// Whether some cube sees past a point of the ray. By the nearest thing around: of several cubes one is enough to call a place free,
+    /// so that things would shrink by the rounding of all.
+    fn is_free(&mut self, t: f32) -> bool {
+        let (place, cubes) = (self.ray.at(t), &self.field.cubes);
+        let others = (0..cubes.len()).filter(|&cube| cube != self.seeing);
+        let mut order = std::iter::once(self.seeing).chain(others);
+        let seeing = order.find(|&cube| cubes[cube].largest_relative_depth(place) < 1.0 - IN_FRONT);
+        self.seeing = seeing.unwrap_or(self.seeing);
+        seeing.is_some()
+    }
+
+    /// The first end in a bracket whose near end is free.
+    fn within(&mut self, [near, far]: [f32; 2]) -> Option<f32> {
+        let parallax = self.field.apart * (near.recip() - far.recip());
+        if parallax < SHORT {
+            let met = self.field.cubes[self.seeing].meets(self.ray, self.ray.at(near));
+            if met > near && met < far && self.discord(met) < EXACT {
+                return Some(met);
+            }
+        }
+        self.steps([near, far], (parallax * self.field.texels / STEP_TEXELS).ceil().clamp(STEPS[0], STEPS[1]) as u32)
+    }
+
+    /// Steps even in the inverse, as the pictures are (Umenhoffer, Patow & Szirmay-Kalos 2007).
+    fn steps(&mut self, [near, far]: [f32; 2], count: u32) -> Option<f32> {
+        let step = (near.recip() - far.recip()) / count as f32;
+        let mut last = near;
+        for i in 1..=count {
+            let next = (near.recip() - i as f32 * step).recip();
+            if !self.is_free(next)
+                && let Some(found) = self.agreed([last, next])
+            {
+                return Some(found);
+            }
+            last = next;
+        }
+        None
+    }
+
+    /// The place in a step on which the cubes agree best; none if it is hidden from all, but nothing is there.
+    fn agreed(&mut self, step: [f32; 2]) -> Option<f32> {
+        let [mut free, mut hidden] = step;
+        let slack = 0.5 * (hidden - free);
+        let (mut best, mut least) = (hidden, f32::INFINITY);
+        for _ in 0..HALVINGS {
+            for cube in &self.field.cubes {
+                let met = cube.meets(self.ray, self.ray.at(hidden));
+                // Not so of what is not a number.
+                if met >= step[0] - slack && met <= step[1] + slack {
+                    let discord = self.discord(met);
+                    if discord < EXACT {
+                        return Some(met);
+                    }
+                    if discord < least {
+                        (best, least) = (met, discord);
+                    }
+                }
+            }
+            let middle = 2.0 / (free.recip() + hidden.recip());
+            *(if self.is_free(middle) { &mut free } else { &mut hidden }) = middle;
+        }
+        (least < DISCORD).then_some(best)
+    }
+
+    /// How far the two cubes that come nearest to agreeing that the ray ends at a point are from it; infinite if more see past it than see it.
+    fn discord(&self, t: f32) -> f32 {
+        let place = self.ray.at(t);
+        let (mut first, mut second, mut votes) = (f32::INFINITY, f32::INFINITY, 0);
+        for cube in &self.field.cubes {
+            let off = cube.relative_depth(place) - 1.0;
+            votes += i32::from(off.abs() < SEEN) - i32::from(off <= -SEEN);
+            second = second.min(first.max(off.abs()));
+            first = first.min(off.abs());
+        }
+        if votes < 0 { f32::INFINITY } else { first + second.min(ALONE) }
     }
 }
 

@@ -24,6 +24,7 @@ mod guided;
 mod march;
 mod proxy;
 mod slabs;
+mod surface;
 mod texel;
 
 pub use cube::CubeField;

@@ -64,17 +64,27 @@ fn frame(face: Face) -> (Vec3, Vec3) {
 ///
 /// `None` for a direction that is zero or not finite.
 #[must_use]
+#[inline]
 pub fn cube_coord(direction: Vec3) -> Option<CubeCoord> {
     let face = Face::dominant(direction)?;
-    let (right, down) = frame(face);
     let largest = direction[face.axis()].abs();
-    // Divide before taking the dot product: a quotient is at most 1, whatever the length of the direction.
-    let scaled = direction / largest;
-    Some(CubeCoord { face, uv: 0.5 * Vec2::new(scaled.dot(right), scaled.dot(down)) + 0.5 })
+    // Divide first: a quotient is at most 1, whatever the length of the direction.
+    let [x, y, z] = (direction / largest).to_array();
+    // As `frame` has them, without products with 0.
+    let (right, down) = match face {
+        Face::PosX => (-z, -y),
+        Face::NegX => (z, -y),
+        Face::PosY => (x, z),
+        Face::NegY => (x, -z),
+        Face::PosZ => (x, -y),
+        Face::NegZ => (-x, -y),
+    };
+    Some(CubeCoord { face, uv: 0.5 * Vec2::new(right, down) + 0.5 })
 }
 
 /// The direction (largest component ±1) through a position on a face; inverse of [`cube_coord`].
 #[must_use]
+#[inline]
 pub fn cube_direction(coord: CubeCoord) -> Vec3 {
     let (right, down) = frame(coord.face);
     let p = 2.0 * coord.uv - 1.0;

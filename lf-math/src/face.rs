@@ -32,18 +32,21 @@ impl Face {
 
     /// The number 0 … 5.
     #[must_use]
+    #[inline]
     pub fn index(self) -> u8 {
         self as u8
     }
 
     /// The axis `k` the face is perpendicular to: 0, 1 or 2 for x, y or z.
     #[must_use]
+    #[inline]
     pub fn axis(self) -> usize {
         usize::from(self.index() / 2)
     }
 
     /// +1 or −1: which way along its axis the face looks.
     #[must_use]
+    #[inline]
     pub fn sign(self) -> f32 {
         if self.index().is_multiple_of(2) { 1.0 } else { -1.0 }
     }
@@ -80,19 +83,20 @@ impl Face {
     ///
     /// `None` for a direction that is zero or not finite: such a ray has no face.
     #[must_use]
+    #[inline]
     pub fn dominant(direction: Vec3) -> Option<Self> {
         let a = direction.abs();
         if !direction.is_finite() || a.max_element() == 0.0 {
             return None;
         }
-        let axis = if a.x >= a.y && a.x >= a.z {
-            0
+        let (along, positive, negative) = if a.x >= a.y && a.x >= a.z {
+            (direction.x, Self::PosX, Self::NegX)
         } else if a.y >= a.z {
-            1
+            (direction.y, Self::PosY, Self::NegY)
         } else {
-            2
+            (direction.z, Self::PosZ, Self::NegZ)
         };
-        Self::from_index(2 * axis as u8 + u8::from(direction[axis] < 0.0))
+        Some(if along < 0.0 { negative } else { positive })
     }
 
     /// The name used in messages and file listings, such as `+X`.

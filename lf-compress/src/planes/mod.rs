@@ -46,6 +46,13 @@ pub struct PlaneImage {
 }
 
 impl Plane {
+    /// Its value at the centre of the block's first texel, and what it grows by to the next texel along x and along y.
+    #[must_use]
+    pub fn coefficients(self) -> [f32; 3] {
+        let [_, dx, dy] = self.0.map(f16::to_f32);
+        [self.at(0, 0), dx, dy]
+    }
+
     fn at(self, x: usize, y: usize) -> f32 {
         let [middle, dx, dy] = self.0.map(f16::to_f32);
         middle + (x as f32 - MIDDLE) * dx + (y as f32 - MIDDLE) * dy
