@@ -24,7 +24,7 @@ fn methods_are_compared_on_the_same_frames() {
         "methods",
         "museum",
         "--eyes",
-        "2",
+        "7",
         "--size",
         "48",
         "--budget",
@@ -51,6 +51,7 @@ fn methods_are_compared_on_the_same_frames() {
     let ours = table.lines().find(|line| line.contains("ours")).unwrap();
     assert!(ours.contains("bytes"), "{ours}");
     assert!(table.lines().any(|line| line.starts_with("| ray tracing |") && line.contains("| – |")), "{table}");
+    assert!(table.contains("Mirror sphere, 7 eyes, 48×48 pixels"), "{table}");
     // The slabs of all presets need more than was allowed.
     assert!(!table.contains("| slabs |"));
     let json: serde_json::Value = serde_json::from_slice(&fs::read(out.join("museum.json")).unwrap()).unwrap();
@@ -70,6 +71,7 @@ fn bad_arguments_are_one_clear_error() {
         (&["methods", "--budget", "0"], "0.5 to 4000"),
         (&["methods", "--budget", "NaN"], "0.5 to 4000"),
         (&["methods", "--size", "1"], "16..=4096"),
+        (&["methods", "--eyes", "0"], "1..=64"),
         (&["methods", "museum@1,2,3"], "NAME|FILE[@X,Y,Z,SIZE]"),
     ] {
         let folder = TempDir::new().unwrap();
