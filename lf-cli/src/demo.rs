@@ -22,6 +22,8 @@ use crate::sources::{Source, builtin, from_file};
 /// Texels along the edge of the environment map's faces, and rays per texel and axis.
 const CUBE_SIZE: u32 = 512;
 const CUBE_GRID: u32 = 2;
+/// Eyes around each reflector.
+const EYES: u32 = 8;
 /// Eyes of the parallax sheet, and the angle between them, radians (7°).
 const ARC_EYES: u32 = 6;
 const ARC_STEP: f32 = 0.122_173_05;
@@ -111,7 +113,7 @@ fn draw(
     stage: &Stage<'_>,
     reflectors: &[(String, TriangleMesh)],
 ) -> Result<Vec<(String, ReflectorFrames)>> {
-    let cameras = full_orbit(edge(stage), args.size)?;
+    let cameras = full_orbit(edge(stage), args.size, EYES)?;
     let backgrounds = stage.backgrounds(&cameras);
     let methods = if stage.gpu.is_some() { 5 } else { 3 };
     let bar = progress_bar((reflectors.len() * cameras.len() * methods) as u64, "frames", "pictures");

@@ -5,9 +5,10 @@ use std::f32::consts::TAU;
 use anyhow::{Context, Result};
 use glam::Vec3;
 use lf_gpu::MirrorMesh;
-use lf_math::{GeometryError, Image, Pinhole, TriangleMesh, image_error};
+use lf_math::{GeometryError, Image, Pinhole, TriangleMesh};
 use lf_report::{EyeError, Timing, measure};
 use lf_scene::reference::{self, Mirror, Reference};
+use rayon::prelude::*;
 
 use crate::device::{CpuMethod, CpuSide, GpuMethod, GpuSide, Method};
 use crate::pictures::{display, masked, over};
@@ -68,9 +69,9 @@ pub(crate) fn orbit(edge: f32, size: u32, from: f32, step: f32, count: u32) -> R
     (0..count).map(|i| Pinhole::look_at(eye(i), Vec3::ZERO, FOV_Y, size, size)).collect()
 }
 
-/// The full circle of eight eyes.
-pub(crate) fn full_orbit(edge: f32, size: u32) -> Result<Vec<Pinhole>, GeometryError> {
-    orbit(edge, size, 0.0, TAU / 8.0, 8)
+/// `count` cameras evenly on a full circle.
+pub(crate) fn full_orbit(edge: f32, size: u32, count: u32) -> Result<Vec<Pinhole>, GeometryError> {
+    orbit(edge, size, 0.0, TAU / count as f32, count)
 }
 
 impl Stage<'_> {
@@ -108,12 +109,7 @@ impl Stage<'_> {
         let devices: &[bool] = if self.gpu.is_some() { &[true, false] } else { &[false] };
         for (&on_gpu, asked) in devices.iter().flat_map(|gpu| [(gpu, Asked::Slabs), (gpu, Asked::Cube)]) {
             let mut frames = self.method(asked, on_gpu, mesh, cameras, backgrounds, &done)?;
-            for (eye, (picture, (truth, reference))) in
-                frames.pictures.iter().zip(truth.iter().zip(&references)).enumerate()
-            {
-                let error = image_error(truth, picture, &reference.mask).context("the reflector is out of sight")?;
-                frames.errors.push(EyeError::new(eye, error));
-            }
+            frames.errors = compared(&references, &truth, &frames.pictures)?;
             methods.push(frames);
         }
         Ok(ReflectorFrames { references, reference_timing, truth, methods })
@@ -146,6 +142,19 @@ impl Stage<'_> {
         }
         Ok(MethodFrames { asked, on_gpu, timing: merged(&timings)?, errors: vec![], pictures })
     }
+}
+
+/// The error of each eye's picture over the reflector's pixels; of several eyes at once, as what is seen takes longer to find out than a frame.
+pub(crate) fn compared(
+    references: &[Reference],
+    truth: &[Image<[u8; 4]>],
+    pictures: &[Image<[u8; 4]>],
+) -> Result<Vec<EyeError>> {
+    let eyes = (references, truth, pictures).into_par_iter().enumerate();
+    let errors = eyes.map(|(eye, (reference, truth, picture))| {
+        EyeError::compare(eye, truth, picture, &reference.mask).context("the reflector is out of sight")
+    });
+    errors.collect()
 }
 
 /// Draws a frame several times; the timing and the picture.

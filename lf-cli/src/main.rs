@@ -19,6 +19,7 @@ mod info;
 mod input;
 mod methods;
 mod methods_args;
+mod methods_table;
 mod output;
 mod pictures;
 mod plan;

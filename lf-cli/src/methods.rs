@@ -1,34 +1,35 @@
 //! `lfslab methods`: what people use today and our own methods, side by side on the same frames.
 
-use std::fmt::Write as _;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
 use lf_gpu::{Gpu, MirrorMesh, Target};
-use lf_math::{Image, ImageError, Pinhole, TriangleMesh, image_error};
-use lf_report::{EyeError, Machine, MethodResult, Report, Timing, measure};
+use lf_math::{Image, Pinhole, TriangleMesh};
+use lf_report::{Machine, MethodResult, Report, Timing, measure};
 use lf_scene::Quality;
 use lf_scene::reference::{self, Mirror, Reference};
 
 use crate::contenders::{Budget, Contender, Drawn, contenders};
 use crate::demo::command_line;
 use crate::device::{CpuMethod, GpuMethod, open_gpu};
-use crate::frames::{full_orbit, merged, timed};
-use crate::methods_args::MethodsArgs;
-use crate::output::{png, print, progress_bar, write};
-use crate::pictures::{difference, display, masked, noise, over, sheet, shrunk};
-use crate::scene_args::SceneArgs;
+use crate::frames::{compared, full_orbit, merged, timed};
+use crate::methods_args::{MethodsArgs, ScenePlace};
+use crate::methods_table::table;
+use crate::output::{jpeg, print, progress_bar, write};
+use crate::pictures::{Tile, difference, display, masked, mosaic, noise, over, shrunk};
 use crate::sources::{Source, builtin};
 
 /// Frames of each eye that are timed, after one that is not.
 const REPEATS: usize = 2;
 /// Times as many samples as texels have, where there is noise.
 const REFERENCE_SAMPLES: u32 = 16;
+/// Pixels of a method's picture on the sheet, at most, and methods beside each other on it: both fit a page of documentation.
+const TILE: u32 = 256;
+const COLUMNS: usize = 4;
 
-/// One row of the table.
-struct Row {
+/// What came of one method.
+struct Measured {
     result: MethodResult,
-    errors: Vec<ImageError>,
     /// The first eye's.
     picture: Image<[u8; 4]>,
 }
@@ -54,32 +55,33 @@ pub(crate) fn run(args: &MethodsArgs) -> Result<()> {
     print(&text)
 }
 
-/// All methods in one scene: pictures and report to the folder, the table as Markdown.
-fn compare(args: &MethodsArgs, scene: &str) -> Result<String> {
+/// All methods in one scene: pictures, plots and report to the folder, the table as Markdown.
+fn compare(args: &MethodsArgs, scene: &ScenePlace) -> Result<String> {
     let start = Instant::now();
-    let mut source = Source::load(&SceneArgs::of(scene, &args.light))?;
+    let mut source = Source::load(&scene.in_light(&args.light))?;
     let frames = frames(args, &mut source)?;
     let gpu = open_gpu(args.cpu);
     let budget = Budget { bytes: (args.budget * 1e6) as u64, folder: &args.out };
-    let mut rows = vec![];
+    let mut methods = vec![];
     contenders(&source, &budget, gpu.as_ref(), &mut |contender| {
         eprintln!("method   {}, {}", contender.name, contender.parameters);
-        rows.push(row(&frames, contender)?);
+        methods.push(measured(&frames, contender)?);
         Ok(())
     })?;
-    let report = report(&source, &frames, &rows, gpu.as_ref().map(Gpu::description));
-    let base = source.name().to_owned();
-    write(&args.out.join(format!("{base}.png")), &png(&pictures(&frames, &rows))?)?;
-    write(&args.out.join(format!("{base}.json")), report.to_json()?.as_bytes())?;
-    write(&args.out.join(format!("{base}.svg")), report.error_time_svg()?.as_bytes())?;
-    eprintln!("{base}: {:.0} s", start.elapsed().as_secs_f64());
-    Ok(table(&source, &frames, &rows, &report.machine))
+    let report = report(&source, &frames, &methods, gpu.as_ref().map(Gpu::description));
+    let file = |end: &str| args.out.join(format!("{}{end}", source.name()));
+    write(&file(".jpg"), &jpeg(&pictures(&frames, &methods))?)?;
+    write(&file(".json"), report.to_json()?.as_bytes())?;
+    write(&file("-time.svg"), report.error_time_svg()?.as_bytes())?;
+    write(&file("-bytes.svg"), report.error_bytes_svg()?.as_bytes())?;
+    eprintln!("{}: {:.0} s", source.name(), start.elapsed().as_secs_f64());
+    Ok(table(&report) + &conditions(&frames, &report.machine))
 }
 
-/// Traces the sphere from eight eyes.
+/// Traces the sphere from all eyes.
 fn frames(args: &MethodsArgs, source: &mut Source) -> Result<Frames> {
     let (_, mesh) = builtin("sphere", &source.cell)?;
-    let cameras = full_orbit(2.0 * source.cell.half_extent().min_element(), args.size)?;
+    let cameras = full_orbit(2.0 * source.cell.half_extent().min_element(), args.size, args.eyes)?;
     let quality = *source.tracer.quality();
     let times = if source.tracer.is_random() { REFERENCE_SAMPLES } else { 1 };
     let samples = args.reference_samples.unwrap_or(times.saturating_mul(quality.samples));
@@ -99,15 +101,8 @@ fn frames(args: &MethodsArgs, source: &mut Source) -> Result<Frames> {
 }
 
 /// Draws, times and compares one method.
-fn row(frames: &Frames, contender: &Contender<'_>) -> Result<Row> {
-    let (mut timings, mut errors, mut first) = (vec![], vec![], None);
-    for (eye, camera) in frames.cameras.iter().enumerate() {
-        let (timing, picture) = draw(frames, contender, camera)?;
-        timings.push(timing);
-        let error = image_error(&frames.truth[eye], &picture, &frames.references[eye].mask);
-        errors.push(error.context("the reflector is out of sight")?);
-        first.get_or_insert(picture);
-    }
+fn measured(frames: &Frames, contender: &Contender<'_>) -> Result<Measured> {
+    let (timings, pictures): (Vec<_>, Vec<_>) = draw(frames, contender)?.into_iter().unzip();
     let result = MethodResult {
         reflector: "sphere".to_owned(),
         method: contender.name.to_owned(),
@@ -116,32 +111,37 @@ fn row(frames: &Frames, contender: &Contender<'_>) -> Result<Row> {
             Drawn::OnCpu(_) => "CPU".to_owned(),
             Drawn::OnGpu(gpu, _) => gpu.name(),
         },
-        eyes: (0..).zip(&errors).map(|(eye, error)| EyeError::new(eye, *error)).collect(),
+        eyes: compared(&frames.references, &frames.truth, &pictures)?,
         timing: merged(&timings)?,
         bytes_on_device: contender.bytes,
         bytes_on_disk: contender.on_disk,
         preparation_s: contender.preparation_s,
     };
-    let picture = first.context("there are no eyes")?;
-    Ok(Row { result, errors, picture })
+    let picture = pictures.into_iter().next().context("there are no eyes")?;
+    Ok(Measured { result, picture })
 }
 
-fn draw(frames: &Frames, contender: &Contender<'_>, camera: &Pinhole) -> Result<(Timing, Image<[u8; 4]>)> {
+/// Every eye's time and picture.
+fn draw(frames: &Frames, contender: &Contender<'_>) -> Result<Vec<(Timing, Image<[u8; 4]>)>> {
+    let (mesh, cameras) = (&frames.mesh, frames.cameras.iter());
     match contender.drawn {
-        Drawn::OnCpu(environment) => timed(CpuMethod::new(environment, &frames.mesh, camera), REPEATS),
+        Drawn::OnCpu(environment) => {
+            cameras.map(|camera| timed(CpuMethod::new(environment, mesh, camera), REPEATS)).collect()
+        }
         Drawn::OnGpu(gpu, pass) => {
-            let (mesh, target) =
-                (MirrorMesh::new(gpu, &frames.mesh)?, Target::new(gpu, camera.width(), camera.height())?);
-            timed(GpuMethod { gpu, pass, target: &target, mesh: &mesh, camera }, REPEATS)
+            let (mesh, truth) = (MirrorMesh::new(gpu, mesh)?, &frames.truth[0]);
+            let target = Target::new(gpu, truth.width(), truth.height())?;
+            let method = |camera| GpuMethod { gpu, pass, target: &target, mesh: &mesh, camera };
+            cameras.map(|camera| timed(method(camera), REPEATS)).collect()
         }
     }
 }
 
-fn report(source: &Source, frames: &Frames, rows: &[Row], adapter: Option<String>) -> Report {
+fn report(source: &Source, frames: &Frames, methods: &[Measured], adapter: Option<String>) -> Report {
     let traced = MethodResult {
         reflector: "sphere".to_owned(),
         method: "ray tracing".to_owned(),
-        parameters: format!("reference; samples of each ray: {}", frames.samples),
+        parameters: format!("reference; samples of each ray: {}; scene and hierarchy", frames.samples),
         device: "CPU".to_owned(),
         eyes: vec![],
         timing: frames.timing.clone(),
@@ -156,65 +156,54 @@ fn report(source: &Source, frames: &Frames, rows: &[Row], adapter: Option<String
         scene: source.name().to_owned(),
         reproduce: command_line(),
         facts: vec![],
-        results: rows.iter().map(|row| row.result.clone()).chain([traced]).collect(),
+        results: methods.iter().map(|method| method.result.clone()).chain([traced]).collect(),
         notes: vec![],
     }
 }
 
-/// The first eye's pictures and errors of all methods.
-fn pictures(frames: &Frames, rows: &[Row]) -> Image<[u8; 4]> {
-    let black = Image::filled(frames.truth[0].width(), frames.truth[0].height(), [0, 0, 0, 255]);
+/// The first eye's pictures, and below each what is wrong with it. Of methods with as many bytes the best stands for all; a GPU draws the
+/// same picture.
+fn pictures(frames: &Frames, methods: &[Measured]) -> Image<[u8; 4]> {
+    let size = frames.truth[0].width();
+    let (black, factor) = (Image::filled(size, size, [0, 0, 0, 255]), size.div_ceil(TILE));
     let truth = masked(&frames.truth[0], &frames.references[0].mask, &black);
-    let mut sheets = vec![("ray traced".to_owned(), vec![shrunk(&truth, 2)])];
-    // A GPU draws the same picture.
-    for row in rows.iter().filter(|row| row.result.device == "CPU") {
-        let drawn = over(&row.picture, &black);
+    let mut tiles =
+        vec![Tile { title: "ray traced".to_owned(), note: String::new(), pictures: vec![shrunk(&truth, factor)] }];
+    for Measured { result, picture } in methods.iter().filter(|method| stands_for_all(&method.result, methods)) {
+        let drawn = over(picture, &black);
         let apart = difference(&truth, &drawn);
-        let title = format!("{}, {:.1} MB", row.result.method, row.result.bytes_on_device as f64 / 1e6);
-        sheets.push((title, vec![shrunk(&drawn, 2), shrunk(&apart, 2)]));
+        let [megabytes, psnr] = [result.bytes_on_device as f64 / 1e6, result.mean_psnr_db().unwrap_or(f64::NAN)];
+        tiles.push(Tile {
+            title: result.method.clone(),
+            note: format!("{megabytes:.1} MB, {psnr:.1} dB"),
+            pictures: vec![shrunk(&drawn, factor), shrunk(&apart, factor)],
+        });
     }
-    sheet(&sheets)
+    mosaic(&tiles, COLUMNS)
 }
 
-/// The table of one scene. The best of each device at its time or less, and at its bytes or less, are marked.
-fn table(source: &Source, frames: &Frames, rows: &[Row], machine: &Machine) -> String {
-    let mut text = format!("## {}\n\n", source.name());
-    text += "| method | parameters | device | MB | ms | PSNR, dB | relMSE | off > 0.1 | front |\n|---|---|---|--:|--:|--:|--:|--:|---|\n";
-    for (number, row) in rows.iter().enumerate() {
-        let result = &row.result;
-        let mean = |f: &dyn Fn(&ImageError) -> f64| row.errors.iter().map(f).sum::<f64>() / row.errors.len() as f64;
-        let (q1, q3) = result.timing.quartiles();
-        // Writing to a string does not fail.
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {:.1} | {:.1} [{:.1}–{:.1}] | {:.2} | {:.4} | {:.2} % | {} |",
-            result.method,
-            result.parameters,
-            result.device,
-            result.bytes_on_device as f64 / 1e6,
-            1e3 * result.timing.median(),
-            1e3 * q1,
-            1e3 * q3,
-            psnr(row),
-            mean(&|error| error.rel_mse),
-            100.0 * mean(&ImageError::share_over_tenth),
-            front(rows, number)
-        );
-    }
+/// Whether a result is the best of its method, on the CPU, in its bytes.
+fn stands_for_all(this: &MethodResult, methods: &[Measured]) -> bool {
+    let like = |other: &&MethodResult| {
+        (&other.method, &other.device, other.bytes_on_device) == (&this.method, &this.device, this.bytes_on_device)
+    };
+    let mut twins = methods.iter().map(|method| &method.result).filter(like);
+    this.device == "CPU" && twins.all(|other| other.mean_psnr_db() <= this.mean_psnr_db())
+}
+
+/// What the table was measured on.
+fn conditions(frames: &Frames, machine: &Machine) -> String {
     let adapter = machine.adapter.as_deref().unwrap_or("none");
-    let _ = writeln!(
-        text,
-        "\nMirror sphere, {} eyes, {}×{} pixels; the traced pictures take {:.0} ms each, samples of each ray: {}{}. {}, {} threads; GPU: {adapter}.\n",
+    format!(
+        "\nMirror sphere, {} eyes, {}×{} pixels; samples of each traced ray: {}{}. {}, {} threads; GPU: {adapter}.\n\n",
         frames.cameras.len(),
         frames.truth[0].width(),
         frames.truth[0].height(),
-        1e3 * frames.timing.median(),
         frames.samples,
         noise_note(frames),
         machine.cpu,
         machine.threads,
-    );
-    text
+    )
 }
 
 fn noise_note(frames: &Frames) -> String {
@@ -222,24 +211,5 @@ fn noise_note(frames: &Frames) -> String {
     match noise(pairs).filter(|share| *share > 0.0) {
         Some(share) => format!(", their standard error {:.2} % of the radiance", 100.0 * share),
         None => String::new(),
-    }
-}
-
-/// Mean of the eyes'.
-fn psnr(row: &Row) -> f64 {
-    row.result.mean_psnr_db().unwrap_or(f64::INFINITY)
-}
-
-/// On which fronts a method is among those of its device: no other is better at its time or less, or at its bytes or less.
-fn front(rows: &[Row], number: usize) -> &'static str {
-    let this = &rows[number];
-    let others = || rows.iter().filter(|row| row.result.device == this.result.device && psnr(row) > psnr(this));
-    let time = others().all(|row| row.result.timing.median() > this.result.timing.median());
-    let bytes = others().all(|row| row.result.bytes_on_device > this.result.bytes_on_device);
-    match (time, bytes) {
-        (true, true) => "time, bytes",
-        (true, false) => "time",
-        (false, true) => "bytes",
-        (false, false) => "",
     }
 }

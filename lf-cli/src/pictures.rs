@@ -6,8 +6,9 @@ use lf_math::{Image, srgb8_from_linear};
 
 /// Differences are shown this many times as bright.
 pub(crate) const ERROR_GAIN: u8 = 4;
-/// Pixels of a title's letters: 8 × 8 dots of 2 pixels.
+/// Pixels of a title's letters: 8 × 8 dots of 2 pixels, or half as wide.
 const LETTER: u32 = 16;
+const NARROW: u32 = LETTER / 2;
 const TITLE: u32 = LETTER + 8;
 const GAP: u32 = 4;
 const PAPER: [u8; 4] = [24, 24, 28, 255];
@@ -94,6 +95,33 @@ pub(crate) fn sheet(rows: &[(String, Vec<Image<[u8; 4]>>)]) -> Image<[u8; 4]> {
     sheet
 }
 
+/// A column of pictures under a title and a note.
+pub(crate) struct Tile {
+    pub(crate) title: String,
+    pub(crate) note: String,
+    pub(crate) pictures: Vec<Image<[u8; 4]>>,
+}
+
+/// Tiles of equally large pictures, so many in each row.
+pub(crate) fn mosaic(tiles: &[Tile], columns: usize) -> Image<[u8; 4]> {
+    let first = tiles.iter().find_map(|tile| tile.pictures.first());
+    let (width, height) = first.map_or((1, 1), |picture| (picture.width(), picture.height()));
+    let deepest = tiles.iter().map(|tile| tile.pictures.len()).max().unwrap_or(0) as u32;
+    let [across, down] = [width + GAP, TITLE + LETTER + deepest * (height + GAP)];
+    let [columns, rows] = [columns.min(tiles.len()), tiles.len().div_ceil(columns.max(1))].map(|count| count as u32);
+    let mut mosaic = Image::filled(columns * across + GAP, rows * down + GAP, PAPER);
+    let fitting = |text: &str| text.chars().take((width / NARROW) as usize).collect::<String>();
+    for (place, tile) in (0..).zip(tiles) {
+        let (x, y) = (GAP + place % columns * across, place / columns * down + GAP);
+        write_letters(&mut mosaic, &fitting(&tile.title), [x, y], NARROW);
+        write_letters(&mut mosaic, &fitting(&tile.note), [x, y + LETTER], NARROW);
+        for (row, picture) in (0..).zip(&tile.pictures) {
+            mosaic.blit(picture, x, y + TITLE + LETTER - GAP + row * (height + GAP));
+        }
+    }
+    mosaic
+}
+
 /// Pictures side by side, each under its title.
 pub(crate) fn strip(panels: &[(&str, Image<[u8; 4]>)]) -> Image<[u8; 4]> {
     let pictures = panels.iter().map(|(_, picture)| picture.clone()).collect();
@@ -106,14 +134,18 @@ pub(crate) fn strip(panels: &[(&str, Image<[u8; 4]>)]) -> Image<[u8; 4]> {
     strip
 }
 
-/// Letters that the font lacks are left blank.
 fn write_text(picture: &mut Image<[u8; 4]>, text: &str, x: u32, y: u32) {
+    write_letters(picture, text, [x, y], LETTER);
+}
+
+/// Letters of a width, a multiple of 8 pixels. Those that the font lacks are left blank.
+fn write_letters(picture: &mut Image<[u8; 4]>, text: &str, [x, y]: [u32; 2], width: u32) {
+    let dot = Image::filled(width / 8, LETTER / 8, [225, 225, 230, 255]);
     for (column, letter) in (0..).zip(text.chars()) {
         let rows = font8x8::BASIC_FONTS.get(letter).or_else(|| font8x8::LATIN_FONTS.get(letter)).unwrap_or([0; 8]);
         for (dot_y, row) in (0..).zip(rows) {
             for dot_x in (0..8).filter(|bit| row >> bit & 1 == 1) {
-                let dot = Image::filled(LETTER / 8, LETTER / 8, [225, 225, 230, 255]);
-                picture.blit(&dot, x + column * LETTER + dot_x * LETTER / 8, y + dot_y * LETTER / 8);
+                picture.blit(&dot, x + column * width + dot_x * width / 8, y + dot_y * LETTER / 8);
             }
         }
     }
@@ -142,5 +174,20 @@ mod tests {
         let sheet = sheet(&[("one".into(), vec![picture.clone(), picture.clone()]), ("two".into(), vec![picture])]);
         assert_eq!((sheet.width(), sheet.height()), (2 * 8 + 4, 2 * (24 + 2 + 4) + 4));
         assert_eq!(sheet.get(GAP, TITLE), [200, 100, 0, 255]);
+    }
+
+    #[test]
+    fn mosaics_break_into_rows() {
+        let picture = Image::filled(20, 10, [200, 100, 0, 255]);
+        let tile = |count: usize| Tile {
+            title: "a".to_owned(),
+            note: "far too long for the width".to_owned(),
+            pictures: vec![picture.clone(); count],
+        };
+        let mosaic = mosaic(&[tile(1), tile(2), tile(2)], 2);
+        assert_eq!((mosaic.width(), mosaic.height()), (2 * 24 + 4, 2 * (40 + 2 * 14) + 4));
+        // The third is in the second row, and its second picture ends where the sheet does.
+        assert_eq!(mosaic.get(GAP, 2 * 68 - GAP - 1), [200, 100, 0, 255]);
+        assert_eq!(mosaic.get(GAP + 24, 2 * 68 - GAP - 1), PAPER);
     }
 }

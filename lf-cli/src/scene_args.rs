@@ -60,13 +60,6 @@ pub(crate) enum LightKind {
     Global,
 }
 
-impl SceneArgs {
-    /// A scene with the cell that belongs to it.
-    pub(crate) fn of(scene: &str, light: &LightArgs) -> Self {
-        Self { scene: scene.to_owned(), light: light.clone(), camera: None, cell: None }
-    }
-}
-
 impl LightArgs {
     /// What the tracer is asked for.
     pub(crate) fn quality(&self) -> Quality {

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::image::Image;
+
 /// Why a geometric value could not be made.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
@@ -103,4 +105,13 @@ pub(crate) fn finite(what: &'static str, value: f32) -> Result<f32, GeometryErro
 
 pub(crate) fn positive(what: &'static str, value: f32) -> Result<f32, GeometryError> {
     if finite(what, value)? > 0.0 { Ok(value) } else { Err(GeometryError::NotPositive { what, value }) }
+}
+
+pub(crate) fn same_size<T: Copy, U: Copy>(
+    what: &'static str,
+    image: &Image<T>,
+    other: &Image<U>,
+) -> Result<(), GeometryError> {
+    let [have, want] = [[image.width(), image.height()], [other.width(), other.height()]];
+    if have == want { Ok(()) } else { Err(GeometryError::Size { what, have, want }) }
 }

@@ -1,8 +1,10 @@
 //! Error of one image against another.
 
 use crate::color::linear_from_srgb;
-use crate::error::GeometryError;
+use crate::error::{GeometryError, same_size};
+use crate::flip::flip;
 use crate::image::Image;
+use crate::ssim::ssim;
 
 /// A difference of more than a tenth of the range, in steps of 1/255.
 const TENTH: u8 = 25;
@@ -51,12 +53,8 @@ pub fn image_error(
     test: &Image<[u8; 4]>,
     mask: &Image<bool>,
 ) -> Result<ImageError, GeometryError> {
-    let want = [reference.width(), reference.height()];
-    for (what, have) in [("test image", [test.width(), test.height()]), ("mask", [mask.width(), mask.height()])] {
-        if have != want {
-            return Err(GeometryError::Size { what, have, want });
-        }
-    }
+    same_size("test image", test, reference)?;
+    same_size("mask", mask, reference)?;
     let pairs = || {
         let all = reference.texels().iter().zip(test.texels()).zip(mask.texels());
         all.filter(|(_, inside)| **inside).map(|((a, b), _)| ([a[0], a[1], a[2]], [b[0], b[1], b[2]]))
@@ -86,6 +84,48 @@ pub fn image_error(
     };
     let rel_mse = if light == 0.0 && sum == 0 { 0.0 } else { pairs().map(relative).sum::<f64>() / values };
     Ok(ImageError { pixels, mse: sum as f64 / values, max_abs, over_tenth, rel_mse })
+}
+
+/// How different an image looks from its reference, over a set of pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VisibleError {
+    /// Mean [`flip`], 0 (the same) … 1.
+    pub flip: f64,
+    /// Mean [`ssim`], at most 1 (the same).
+    pub ssim: f64,
+}
+
+/// Compares what is seen of two images where `mask` is true; alpha is ignored. Both are looked at on black: what lies outside the mask does
+/// not count, but for the edge towards it, which both have.
+///
+/// Takes many times as long as [`image_error`].
+///
+/// # Errors
+/// As [`image_error`].
+pub fn visible_error(
+    reference: &Image<[u8; 4]>,
+    test: &Image<[u8; 4]>,
+    mask: &Image<bool>,
+) -> Result<VisibleError, GeometryError> {
+    same_size("test image", test, reference)?;
+    same_size("mask", mask, reference)?;
+    let pixels = mask.texels().iter().filter(|inside| **inside).count();
+    if pixels == 0 {
+        return Err(GeometryError::ZeroCount { what: "number of compared pixels" });
+    }
+    let (reference, test) = (on_black(reference, mask), on_black(test, mask));
+    let mean = |measure: &Image<f32>| {
+        let inside = measure.texels().iter().zip(mask.texels()).filter(|(_, inside)| **inside);
+        inside.map(|(value, _)| f64::from(*value)).sum::<f64>() / pixels as f64
+    };
+    Ok(VisibleError { flip: mean(&flip(&reference, &test)?), ssim: mean(&ssim(&reference, &test)?) })
+}
+
+fn on_black(picture: &Image<[u8; 4]>, mask: &Image<bool>) -> Image<[u8; 4]> {
+    let mut picture = picture.clone();
+    let outside = picture.texels_mut().iter_mut().zip(mask.texels()).filter(|(_, inside)| !**inside);
+    outside.for_each(|(pixel, _)| *pixel = [0, 0, 0, 255]);
+    picture
 }
 
 #[cfg(test)]
@@ -119,10 +159,26 @@ mod tests {
     }
 
     #[test]
+    fn what_is_seen_is_of_the_mask_alone() {
+        let mask = Image::new(32, 1, (0..32).map(|x| x < 16).collect()).unwrap();
+        let reference = Image::filled(32, 1, [90, 120, 60, 255]);
+        let mut test = reference.clone();
+        test.texels_mut()[16..].fill([255; 4]);
+        let same = visible_error(&reference, &test, &mask).unwrap();
+        assert_eq!((same.flip, same.ssim as f32), (0.0, 1.0));
+        test.texels_mut()[..16].fill([255; 4]);
+        let apart = visible_error(&reference, &test, &mask).unwrap();
+        assert!(apart.flip > 0.3 && apart.ssim < 0.95, "{apart:?}");
+    }
+
+    #[test]
     fn refuses_unequal_sizes_and_empty_masks() {
         let image = Image::filled(2, 1, [0u8; 4]);
         let mask = Image::filled(2, 1, true);
         assert!(image_error(&image, &Image::filled(1, 2, [0u8; 4]), &mask).is_err());
         assert!(image_error(&image, &image, &Image::filled(2, 1, false)).is_err());
+        assert!(visible_error(&image, &Image::filled(1, 2, [0u8; 4]), &mask).is_err());
+        assert!(visible_error(&image, &image, &Image::filled(2, 2, true)).is_err());
+        assert!(visible_error(&image, &image, &Image::filled(2, 1, false)).is_err());
     }
 }

@@ -10,7 +10,17 @@ fn result(reflector: &str, method: &str, psnr_db: Option<f64>, ms: f64) -> Optio
     let eye = |(psnr, eye): (f64, usize)| {
         let psnr_db = psnr + (eye as f64 * 1.7).sin();
         let mse = 255.0 * 255.0 / 10f64.powf(psnr_db / 10.0);
-        EyeError { eye, psnr_db, mse, max_abs: 120 + eye as u8, pixels: 51_234 + 10 * eye }
+        EyeError {
+            eye,
+            psnr_db,
+            mse,
+            rel_mse: mse / 5000.0,
+            flip: mse.sqrt() / 200.0,
+            ssim: 1.0 - mse.sqrt() / 100.0,
+            share_over_tenth: mse / 5000.0,
+            max_abs: 120 + eye as u8,
+            pixels: 51_234 + 10 * eye,
+        }
     };
     let slabs = method == "slabs";
     Some(MethodResult {

@@ -72,7 +72,8 @@ fn results_section(report: &Report) -> String {
         let _ = write!(
             html,
             "<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr><th scope=\"col\">Method</th>\
-             <th scope=\"col\">PSNR <small>dB, mean</small></th><th scope=\"col\">Per frame <small>ms, median</small></th>\
+             <th scope=\"col\">PSNR <small>dB, mean</small></th><th scope=\"col\">FLIP <small>mean</small></th>\
+             <th scope=\"col\">Per frame <small>ms, median</small></th>\
              <th scope=\"col\">Over eyes <small>dB, min–max</small></th><th scope=\"col\">Quartiles <small>ms</small></th>\
              <th scope=\"col\">On device</th><th scope=\"col\">On disk</th><th scope=\"col\">Preparation</th></tr></thead>\n\
              <tbody>\n",
@@ -93,10 +94,11 @@ fn result_row(html: &mut String, result: &MethodResult, best: bool) {
     let _ = writeln!(
         html,
         "<tr><th scope=\"row\">{method}<small>{parameters}</small><small>{device}</small></th><td{class}>{psnr}</td>\
-         <td>{median}</td><td>{range}</td><td>{quartiles}</td>{on_device}{on_disk}<td>{preparation}</td></tr>",
+         <td>{flip}</td><td>{median}</td><td>{range}</td><td>{quartiles}</td>{on_device}{on_disk}<td>{preparation}</td></tr>",
         method = html_escape(&result.method),
         parameters = html_escape(&result.parameters),
         device = html_escape(&result.device),
+        flip = result.mean_flip().map_or_else(|| "–".to_owned(), |flip| format!("{flip:.3}")),
         class = if best { " class=\"best\"" } else { "" },
         range = if range.is_empty() { "–" } else { &range },
         on_device = bytes_cell(result.bytes_on_device),
@@ -237,6 +239,8 @@ mod tests {
             "<svg",
             "<caption>sphere</caption>",
             "Quartiles",
+            "FLIP",
+            "<td>0.062</td>",
             "Each eye",
             "src=\"data:image/png;base64,iVBORw0KGgouLi4=\"",
             "Orbit &amp; &lt;eyes&gt;",

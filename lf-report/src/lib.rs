@@ -4,7 +4,7 @@
 //! [`MethodResult`] joins that time to the error of each eye and to the bytes the method needs; a [`Report`] holds the
 //! results of one run with everything a reader needs to judge and to repeat it: machine, scene, command line. It is
 //! written as JSON ([`Report::to_json`], described field by field in `report.schema.json`), as one self-contained HTML
-//! page ([`Report::to_html`]), as a plot ([`Report::error_time_svg`]) and as a Markdown table.
+//! page ([`Report::to_html`]), as plots ([`Report::error_time_svg`], [`Report::error_bytes_svg`]) and as a Markdown table.
 //!
 //! A report compares methods on *the same frames*: errors of different reflectors are never set against each other,
 //! and [`pareto_front`] is taken for each reflector by itself. Whoever fills the report in sees to it that the frames
@@ -12,6 +12,7 @@
 
 #![forbid(unsafe_code)]
 
+mod axis;
 mod error;
 mod html;
 mod labels;

@@ -1,4 +1,4 @@
-//! The plot of error against run time, drawn with plotters' SVG backend.
+//! The plots of error against run time and against memory, drawn with plotters' SVG backend.
 
 use plotters::coord::Shift;
 use plotters::coord::combinators::{BindKeyPoints, IntoLogRange};
@@ -6,11 +6,11 @@ use plotters::drawing::DrawingAreaErrorKind;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use crate::axis::{Axis, decade_ticks, tick_label};
 use crate::error::ReportError;
 use crate::labels::{LabelPlacer, Rect};
 use crate::pareto::pareto_front;
 use crate::result::MethodResult;
-use crate::units;
 
 /// Size of the drawing in pixels.
 const SIZE: (u32, u32) = (960, 560);
@@ -33,8 +33,6 @@ const METHOD_COLORS: [RGBColor; 6] = [
 const LABEL_PX: f64 = 13.0;
 const TITLE_PX: f64 = 19.0;
 const MARKER_RADIUS: i32 = 6;
-/// Shortest time shown: a logarithmic axis has no 0.
-const SHORTEST_MS: f64 = 1e-6;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
@@ -42,7 +40,7 @@ type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 /// One result as drawn, in pixels.
 struct Mark {
     at: (i32, i32),
-    /// The time's first and third quartile on the same height.
+    /// The first and the third quartile on the same height.
     quartiles: ((i32, i32), (i32, i32)),
     color: RGBColor,
     shape: usize,
@@ -51,20 +49,20 @@ struct Mark {
     at_top: bool,
 }
 
-/// Draws PSNR against time per frame: one marker for each result, a Pareto front for each reflector.
-pub(crate) fn error_time_svg(results: &[MethodResult]) -> Result<String, ReportError> {
+/// Draws PSNR against time per frame or memory: one marker for each result, a Pareto front for each reflector.
+pub(crate) fn error_svg(results: &[MethodResult], axis: Axis) -> Result<String, ReportError> {
     let mut svg = String::new();
-    draw(results, &mut svg).map_err(|error| ReportError::Plot(error.to_string()))?;
+    draw(results, axis, &mut svg).map_err(|error| ReportError::Plot(error.to_string()))?;
     Ok(svg)
 }
 
-fn draw(results: &[MethodResult], svg: &mut String) -> Drawn {
+fn draw(results: &[MethodResult], axis: Axis, svg: &mut String) -> Drawn {
     let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
     root.fill(&PAPER)?;
-    draw_title(&root)?;
+    draw_title(&root, axis)?;
 
-    let (ms, db) = (time_range(results), psnr_range(results));
-    let x_axis = (ms.0..ms.1).log_scale().with_key_points(decade_ticks(ms));
+    let (range, db) = (axis.range(results), psnr_range(results));
+    let x_axis = (range.0..range.1).log_scale().with_key_points(decade_ticks(range));
     let mut chart = ChartBuilder::on(&root)
         .margin_top(62)
         .margin_right(24)
@@ -81,7 +79,7 @@ fn draw(results: &[MethodResult], svg: &mut String) -> Drawn {
         .axis_style(FAINT_INK)
         .label_style(small.clone())
         .axis_desc_style(small)
-        .x_desc("median time per frame, ms (logarithmic)")
+        .x_desc(axis.description())
         .y_desc("PSNR, dB (mean of the eyes)")
         .x_label_formatter(&|value| tick_label(*value))
         .y_label_formatter(&|value| format!("{value:.0}"))
@@ -89,9 +87,8 @@ fn draw(results: &[MethodResult], svg: &mut String) -> Drawn {
 
     let (columns, rows) = chart.plotting_area().get_pixel_range();
     let area = Rect { left: columns.start, top: rows.start, right: columns.end, bottom: rows.end };
-    let pixel = |ms: f64, psnr: f64| chart.backend_coord(&(ms.max(SHORTEST_MS), psnr));
-    let marks = marks(results, &area, pixel);
-    let fronts = front_lines(results, &marks, &area);
+    let marks = marks(results, axis, &area, |x, psnr| chart.backend_coord(&(x, psnr)));
+    let fronts = front_lines(results, axis, &marks, &area);
     for line in &fronts {
         root.draw(&PathElement::new(line.clone(), FRONT.stroke_width(2)))?;
     }
@@ -103,56 +100,16 @@ fn draw(results: &[MethodResult], svg: &mut String) -> Drawn {
     Ok(())
 }
 
-fn draw_title(root: &Area<'_>) -> Drawn {
-    let subtitle = "Higher and further left is better. Grey lines: Pareto front of each reflector. \
-                    Dashed: time of a method without error, such as the reference.";
+fn draw_title(root: &Area<'_>, axis: Axis) -> Drawn {
     let title = font(TITLE_PX).style(FontStyle::Bold).color(&INK);
-    root.draw(&Text::new("Error against run time", (24, 12), title))?;
-    root.draw(&Text::new(subtitle, (24, 37), font(LABEL_PX).color(&FAINT_INK)))?;
+    root.draw(&Text::new(axis.title(), (24, 12), title))?;
+    root.draw(&Text::new(axis.subtitle(), (24, 37), font(LABEL_PX).color(&FAINT_INK)))?;
     Ok(())
 }
 
 /// A sans-serif font of a height in CSS pixels; plotters divides by 1.24 when it writes SVG.
 fn font(px: f64) -> FontDesc<'static> {
     FontDesc::new(FontFamily::SansSerif, px * 1.24, FontStyle::Normal)
-}
-
-/// The shortest and the longest time, widened to steps of 1, 2, 5 so that no marker lies on the edge.
-fn time_range(results: &[MethodResult]) -> (f64, f64) {
-    let ms = || {
-        results.iter().flat_map(|r| {
-            let (q1, q3) = r.timing.quartiles();
-            [q1, r.timing.median(), q3].map(|s| (s * 1e3).max(SHORTEST_MS))
-        })
-    };
-    let Some(shortest) = ms().min_by(f64::total_cmp) else { return (1.0, 10.0) };
-    let longest = ms().fold(shortest, f64::max);
-    let steps = steps_125(shortest / 10.0, longest * 10.0);
-    let low = steps.iter().copied().rfind(|step| *step < shortest / 1.1).unwrap_or(shortest / 2.0);
-    let high = steps.iter().copied().find(|step| *step > longest * 1.1).unwrap_or(longest * 2.0);
-    (low, high)
-}
-
-/// …, 1, 2, 5, 10, 20, 50, … from `low` to `high`, both included up to rounding.
-fn steps_125(low: f64, high: f64) -> Vec<f64> {
-    let decades = low.log10().floor() as i32..=high.log10().ceil() as i32;
-    let steps = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
-    steps.filter(|step| *step >= low * (1.0 - 1e-9) && *step <= high * (1.0 + 1e-9)).collect()
-}
-
-/// Ticks at 1, 2, 5 of each decade, at powers of ten only where that would crowd the axis.
-fn decade_ticks(range: (f64, f64)) -> Vec<f64> {
-    let all = steps_125(range.0, range.1);
-    if all.len() <= 13 {
-        return all;
-    }
-    all.into_iter().filter(|step| (step.log10() - step.log10().round()).abs() < 1e-6).collect()
-}
-
-/// A tick's value without trailing zeros: 0.05, 2, 500.
-fn tick_label(ms: f64) -> String {
-    let decimals = (-ms.log10().floor()).max(0.0) as usize;
-    format!("{ms:.decimals$}")
 }
 
 /// The finite errors' range, with room below for labels and above for the marks at the top edge.
@@ -165,23 +122,25 @@ fn psnr_range(results: &[MethodResult]) -> (f64, f64) {
 }
 
 /// Position, look and label of every result.
-fn marks(results: &[MethodResult], area: &Rect, pixel: impl Fn(f64, f64) -> (i32, i32)) -> Vec<Mark> {
+fn marks(results: &[MethodResult], axis: Axis, area: &Rect, pixel: impl Fn(f64, f64) -> (i32, i32)) -> Vec<Mark> {
     let methods = distinct(results, |r| &r.method);
     let reflectors = distinct(results, |r| &r.reflector);
     let index = |names: &[&str], name: &str| names.iter().position(|n| *n == name).unwrap_or(0);
     let mark = |result: &MethodResult| {
         let psnr = result.mean_psnr_db().filter(|psnr| psnr.is_finite());
-        let place = |seconds: f64| {
-            let (x, y) = pixel(seconds * 1e3, psnr.unwrap_or(0.0));
+        let place = |value: f64| {
+            let (x, y) = pixel(value, psnr.unwrap_or(0.0));
             (x, if psnr.is_some() { y } else { area.top + 2 * MARKER_RADIUS })
         };
-        let (q1, q3) = result.timing.quartiles();
+        let (q1, q3) = axis.spread(result);
+        let method = index(&methods, &result.method);
         Mark {
-            at: place(result.timing.median()),
+            at: place(axis.value(result)),
             quartiles: (place(q1), place(q3)),
-            color: METHOD_COLORS[index(&methods, &result.method) % METHOD_COLORS.len()],
-            shape: index(&reflectors, &result.reflector),
-            label: label(results, result, area),
+            color: METHOD_COLORS[method % METHOD_COLORS.len()],
+            // Where colours run out, another shape tells methods apart.
+            shape: index(&reflectors, &result.reflector) + method / METHOD_COLORS.len(),
+            label: label(results, result, axis, area),
             at_top: psnr.is_none(),
         }
     };
@@ -199,20 +158,21 @@ fn distinct<'a>(results: &'a [MethodResult], name: impl Fn(&'a MethodResult) -> 
     names
 }
 
-/// Method and reflector; device and parameters only where these are needed to tell results apart. Long ones are cut.
-fn label(results: &[MethodResult], result: &MethodResult, area: &Rect) -> String {
+/// The method; reflector, device and parameters only as far as these are needed to tell results apart. Long ones are cut.
+fn label(results: &[MethodResult], result: &MethodResult, axis: Axis, area: &Rect) -> String {
     let twins = || results.iter().filter(|r| r.method == result.method && r.reflector == result.reflector);
-    let mut parts = vec![result.method.as_str(), result.reflector.as_str()];
+    let mut parts = vec![result.method.as_str()];
+    if results.iter().any(|r| r.reflector != result.reflector) {
+        parts.push(&result.reflector);
+    }
     if twins().any(|r| r.device != result.device) {
         parts.push(&result.device);
     }
-    let same_device = || twins().filter(|r| r.device == result.device);
-    if same_device().any(|r| r.parameters != result.parameters) && !result.parameters.is_empty() {
-        parts.push(&result.parameters);
-    }
+    let same_device: Vec<&MethodResult> = twins().filter(|r| r.device == result.device).collect();
+    parts.extend(telling_parameters(result, &same_device));
     let mut text = parts.join(", ");
     if result.is_reference() {
-        text += &format!(": reference, {} ms", units::milliseconds(result.timing.median()));
+        text += &format!(": reference, {}", axis.text(result));
     } else if result.mean_psnr_db().is_some_and(f64::is_infinite) {
         text += ": no error";
     }
@@ -223,18 +183,27 @@ fn label(results: &[MethodResult], result: &MethodResult, area: &Rect) -> String
     text
 }
 
+/// Those of a result's parameters, set apart by commas and semicolons, that not all of its twins have.
+fn telling_parameters<'a>(result: &'a MethodResult, twins: &[&MethodResult]) -> Vec<&'a str> {
+    fn split(text: &str) -> impl Iterator<Item = &str> {
+        text.split([',', ';']).map(str::trim).filter(|part| !part.is_empty())
+    }
+    let common = |part: &str| twins.iter().all(|twin| split(&twin.parameters).any(|other| other == part));
+    split(&result.parameters).filter(|part| !common(part)).collect()
+}
+
 /// Width of an average letter. Fonts differ between readers; this is on the wide side of the common sans-serif ones.
 fn letter_width() -> f64 {
     0.58 * LABEL_PX
 }
 
 /// For each reflector the staircase over its undominated results, on to the right edge.
-fn front_lines(results: &[MethodResult], marks: &[Mark], area: &Rect) -> Vec<Vec<(i32, i32)>> {
+fn front_lines(results: &[MethodResult], axis: Axis, marks: &[Mark], area: &Rect) -> Vec<Vec<(i32, i32)>> {
     let front_of = |reflector: &str| {
         let drawn: Vec<usize> =
             (0..results.len()).filter(|&i| results[i].reflector == reflector && !marks[i].at_top).collect();
         let points: Vec<(f64, f64)> =
-            drawn.iter().map(|&i| (results[i].timing.median(), results[i].mean_psnr_db().unwrap_or(0.0))).collect();
+            drawn.iter().map(|&i| (axis.value(&results[i]), results[i].mean_psnr_db().unwrap_or(0.0))).collect();
         let mut line: Vec<(i32, i32)> = Vec::new();
         for at in pareto_front(&points).into_iter().map(|i| marks[drawn[i]].at) {
             if let Some(&(_, y)) = line.last() {
@@ -301,7 +270,7 @@ mod tests {
 
     #[test]
     fn svg_holds_every_label_and_closes_its_tags() {
-        let svg = error_time_svg(&sample::report().results).unwrap();
+        let svg = error_svg(&sample::report().results, Axis::Time).unwrap();
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
         for text in ["slabs, teapot", "environment map, sphere", "ray tracing, teapot: reference", "PSNR, dB"] {
             assert!(svg.contains(text), "{text}");
@@ -313,7 +282,7 @@ mod tests {
 
     #[test]
     fn odd_results_are_drawn_too() {
-        assert!(error_time_svg(&[]).unwrap().starts_with("<svg"));
+        assert!(error_svg(&[], Axis::Time).unwrap().starts_with("<svg"));
         let cases = [
             sample::result("a", "instant", &[20.0], 0.0),
             sample::result("a", "exact", &[f64::INFINITY], 1.0),
@@ -321,31 +290,29 @@ mod tests {
             sample::result("<b>", &"long ".repeat(100), &[-3.0, 99.0], 1e-12),
         ];
         for case in &cases {
-            assert!(error_time_svg(std::slice::from_ref(case)).unwrap().starts_with("<svg"), "{}", case.method);
+            for axis in [Axis::Time, Axis::Bytes] {
+                let svg = error_svg(std::slice::from_ref(case), axis).unwrap();
+                assert!(svg.starts_with("<svg") && svg.contains(axis.title()), "{}", case.method);
+            }
         }
-        let svg = error_time_svg(&cases).unwrap();
+        let svg = error_svg(&cases, Axis::Time).unwrap();
         assert!(!svg.contains("<b>") && svg.contains("exact, a: no error") && svg.contains('…'));
     }
 
     #[test]
-    fn time_axis_encloses_the_data_in_steps() {
-        let at = |ms: f64| sample::result("a", "m", &[30.0], ms * 1e-3);
-        assert_eq!(time_range(&[]), (1.0, 10.0));
-        assert_eq!(time_range(&[at(3.0), at(400.0)]), (2.0, 500.0));
-        assert_eq!(decade_ticks((2.0, 50.0)), [2.0, 5.0, 10.0, 20.0, 50.0]);
-        assert_eq!(decade_ticks((1e-3, 1e3)).len(), 7);
-        assert_eq!([0.05, 1.0, 500.0].map(tick_label), ["0.05", "1", "500"]);
-    }
-
-    #[test]
-    fn labels_tell_twins_apart() {
+    fn labels_tell_twins_apart_and_say_no_more() {
         let area = Rect { left: 0, top: 0, right: 900, bottom: 500 };
-        let mut results = vec![sample::result("a", "slabs", &[30.0], 1.0), sample::result("a", "slabs", &[31.0], 2.0)];
-        results[1].parameters = "BC1".to_owned();
-        assert_eq!(label(&results, &results[1], &area), "slabs, a, BC1");
-        results[1].parameters = results[0].parameters.clone();
+        let of = |parameters: &str| MethodResult {
+            parameters: parameters.to_owned(),
+            ..sample::result("a", "slabs", &[30.0], 1.0)
+        };
+        let mut results = vec![of("64², BC1; 4 steps"), of("64², BC1; 8 steps")];
+        let named = |results: &[MethodResult], i: usize| label(results, &results[i], Axis::Time, &area);
+        assert_eq!([named(&results, 0), named(&results, 1)], ["slabs, 4 steps", "slabs, 8 steps"]);
         results[1].device = "GPU".to_owned();
-        assert_eq!(label(&results, &results[1], &area), "slabs, a, GPU");
-        assert_eq!(label(&results[..1], &results[0], &area), "slabs, a");
+        assert_eq!(named(&results, 1), "slabs, GPU");
+        assert_eq!(named(&results[..1], 0), "slabs");
+        results[1].reflector = "b".to_owned();
+        assert_eq!(named(&results, 1), "slabs, b");
     }
 }

@@ -2,13 +2,14 @@
 
 use serde::{Serialize, Serializer};
 
+use crate::axis::Axis;
 use crate::error::ReportError;
 use crate::machine::Machine;
 use crate::result::{BASELINE_METHOD, MethodResult};
 use crate::{html, plot, units};
 
 /// Name and version of the JSON layout, its first property.
-const SCHEMA: &str = "lfslab-report/1";
+const SCHEMA: &str = "lfslab-report/2";
 
 /// Every result of one run, and where, how and on what it was measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -75,7 +76,16 @@ impl Report {
     /// [`ReportError::InvalidArgument`] as for [`to_json`](Self::to_json); [`ReportError::Plot`] if drawing fails.
     pub fn error_time_svg(&self) -> Result<String, ReportError> {
         self.validate()?;
-        plot::error_time_svg(&self.results)
+        plot::error_svg(&self.results, Axis::Time)
+    }
+
+    /// PSNR against memory on the device, drawn as [`error_time_svg`](Self::error_time_svg) does.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn error_bytes_svg(&self) -> Result<String, ReportError> {
+        self.validate()?;
+        plot::error_svg(&self.results, Axis::Bytes)
     }
 
     /// The report as one HTML page that needs no other file, with `figures` embedded in the order given.

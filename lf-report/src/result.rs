@@ -1,6 +1,6 @@
 //! What was measured of one method on one reflector.
 
-use lf_math::ImageError;
+use lf_math::{GeometryError, Image, ImageError, VisibleError, image_error, visible_error};
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
@@ -21,6 +21,14 @@ pub struct EyeError {
     pub psnr_db: f64,
     /// Mean squared error over all R, G and B values, in steps of 1/255 squared.
     pub mse: f64,
+    /// Mean squared error relative to the reference, of linear light ([`ImageError::rel_mse`]).
+    pub rel_mse: f64,
+    /// Mean FLIP error, 0 … 1.
+    pub flip: f64,
+    /// Mean structural similarity, at most 1.
+    pub ssim: f64,
+    /// Share of the pixels with a component that is off by more than a tenth of the range, 0 … 1.
+    pub share_over_tenth: f64,
     /// Largest difference of any component, 0 … 255.
     pub max_abs: u8,
     /// Number of pixels compared.
@@ -30,14 +38,37 @@ pub struct EyeError {
 impl EyeError {
     /// The error of eye number `eye`.
     #[must_use]
-    pub fn new(eye: usize, error: ImageError) -> Self {
-        Self { eye, psnr_db: error.psnr_db(), mse: error.mse, max_abs: error.max_abs, pixels: error.pixels }
+    pub fn new(eye: usize, error: ImageError, visible: VisibleError) -> Self {
+        Self {
+            eye,
+            psnr_db: error.psnr_db(),
+            mse: error.mse,
+            rel_mse: error.rel_mse,
+            flip: visible.flip,
+            ssim: visible.ssim,
+            share_over_tenth: error.share_over_tenth(),
+            max_abs: error.max_abs,
+            pixels: error.pixels,
+        }
+    }
+
+    /// Compares the image of eye number `eye` with its reference where `mask` is true.
+    ///
+    /// # Errors
+    /// As [`image_error`]: the images and the mask must have the same size, and the mask at least one true pixel.
+    pub fn compare(
+        eye: usize,
+        reference: &Image<[u8; 4]>,
+        test: &Image<[u8; 4]>,
+        mask: &Image<bool>,
+    ) -> Result<Self, GeometryError> {
+        Ok(Self::new(eye, image_error(reference, test, mask)?, visible_error(reference, test, mask)?))
     }
 }
 
 /// One method with one set of parameters on one reflector: error, time and bytes.
 ///
-/// Serialises as its fields and `mean_psnr_db`.
+/// Serialises as its fields, `mean_psnr_db` and `mean_flip`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodResult {
     /// The reflector's name, such as `teapot`.
@@ -64,7 +95,19 @@ impl MethodResult {
     /// Mean of the eyes' PSNR in dB; infinite as soon as one eye's is, `None` for the reference.
     #[must_use]
     pub fn mean_psnr_db(&self) -> Option<f64> {
-        let sum: f64 = self.eyes.iter().map(|eye| eye.psnr_db).sum();
+        self.mean(|eye| eye.psnr_db)
+    }
+
+    /// Mean of the eyes' FLIP errors; `None` for the reference.
+    #[must_use]
+    pub fn mean_flip(&self) -> Option<f64> {
+        self.mean(|eye| eye.flip)
+    }
+
+    /// Mean over the eyes of any of their numbers; `None` for the reference.
+    #[must_use]
+    pub fn mean(&self, number: impl Fn(&EyeError) -> f64) -> Option<f64> {
+        let sum: f64 = self.eyes.iter().map(number).sum();
         (!self.eyes.is_empty()).then(|| sum / self.eyes.len() as f64)
     }
 
@@ -91,8 +134,17 @@ impl MethodResult {
             return refuse("preparation time".to_owned(), format!("{} s is not a duration", self.preparation_s));
         }
         for eye in &self.eyes {
-            if !(eye.mse.is_finite() && eye.mse >= 0.0) {
-                return refuse(format!("mean squared error of eye {}", eye.eye), format!("{} is not one", eye.mse));
+            let numbers = [
+                ("mean squared error", eye.mse, 0.0..=f64::MAX),
+                ("relative error", eye.rel_mse, 0.0..=f64::MAX),
+                ("FLIP", eye.flip, 0.0..=1.0),
+                ("SSIM", eye.ssim, -1.0..=1.0 + 1e-6),
+                ("share of pixels far off", eye.share_over_tenth, 0.0..=1.0),
+            ];
+            for (name, number, range) in numbers {
+                if !range.contains(&number) {
+                    return refuse(format!("{name} of eye {}", eye.eye), format!("{number} is not one"));
+                }
             }
             if eye.psnr_db.is_nan() || eye.psnr_db == f64::NEG_INFINITY {
                 return refuse(format!("PSNR of eye {}", eye.eye), format!("{} dB is not one", eye.psnr_db));
@@ -104,12 +156,13 @@ impl MethodResult {
 
 impl Serialize for MethodResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("MethodResult", 10)?;
+        let mut fields = serializer.serialize_struct("MethodResult", 11)?;
         fields.serialize_field("reflector", &self.reflector)?;
         fields.serialize_field("method", &self.method)?;
         fields.serialize_field("parameters", &self.parameters)?;
         fields.serialize_field("device", &self.device)?;
         fields.serialize_field("mean_psnr_db", &self.mean_psnr_db())?;
+        fields.serialize_field("mean_flip", &self.mean_flip())?;
         fields.serialize_field("eyes", &self.eyes)?;
         fields.serialize_field("timing", &self.timing)?;
         fields.serialize_field("bytes_on_device", &self.bytes_on_device)?;
@@ -137,10 +190,15 @@ mod tests {
 
     #[test]
     fn equal_images_have_null_psnr_in_json() {
-        let equal = EyeError::new(3, ImageError { pixels: 7, mse: 0.0, max_abs: 0, over_tenth: 0, rel_mse: 0.0 });
+        let (image, mask) = (Image::filled(7, 1, [90, 120, 60, 255]), Image::filled(7, 1, true));
+        let equal = EyeError::compare(3, &image, &image, &mask).unwrap();
         assert!(equal.psnr_db.is_infinite());
-        let json = serde_json::to_value(&equal).unwrap();
-        assert_eq!(json, serde_json::json!({"eye": 3, "psnr_db": null, "mse": 0.0, "max_abs": 0, "pixels": 7}));
+        let json = serde_json::to_value(EyeError { ssim: equal.ssim.round(), ..equal }).unwrap();
+        let expected = serde_json::json!({
+            "eye": 3, "psnr_db": null, "mse": 0.0, "rel_mse": 0.0, "flip": 0.0, "ssim": 1.0, "share_over_tenth": 0.0,
+            "max_abs": 0, "pixels": 7
+        });
+        assert_eq!(json, expected);
     }
 
     #[test]
@@ -154,5 +212,7 @@ mod tests {
         assert!(result.validate().is_err());
         result.eyes[0].psnr_db = f64::INFINITY;
         assert!(result.validate().is_ok());
+        result.eyes[0].flip = 1.5;
+        assert!(result.validate().unwrap_err().to_string().contains("FLIP of eye 0"));
     }
 }

@@ -1,6 +1,6 @@
 //! Made-up results for the tests of this crate.
 
-use lf_math::ImageError;
+use lf_math::{ImageError, VisibleError};
 
 use crate::machine::Machine;
 use crate::report::Report;
@@ -11,10 +11,8 @@ use crate::timing::Timing;
 pub(crate) fn result(reflector: &str, method: &str, psnr_db: &[f64], seconds: f64) -> MethodResult {
     let eye = |(eye, &psnr): (usize, &f64)| {
         let mse = 255.0 * 255.0 / 10f64.powf(psnr / 10.0);
-        EyeError {
-            psnr_db: psnr,
-            ..EyeError::new(eye, ImageError { pixels: 51_000 + eye, mse, max_abs: 130, over_tenth: 900, rel_mse: 0.01 })
-        }
+        let error = ImageError { pixels: 51_000 + eye, mse, max_abs: 130, over_tenth: 900, rel_mse: 0.01 };
+        EyeError { psnr_db: psnr, ..EyeError::new(eye, error, VisibleError { flip: 0.0625, ssim: 0.75 }) }
     };
     MethodResult {
         reflector: reflector.to_owned(),

@@ -50,7 +50,7 @@ pub(crate) fn grouped(count: u64) -> String {
 }
 
 /// Three significant digits, never in exponent form; whole numbers from 100 on.
-fn significant(value: f64) -> String {
+pub(crate) fn significant(value: f64) -> String {
     let decimals = if value >= 99.95 {
         0
     } else if value >= 9.995 {

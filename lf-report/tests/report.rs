@@ -4,7 +4,17 @@ use lf_report::{BASELINE_METHOD, EyeError, Machine, MethodResult, Report, Report
 use serde_json::Value;
 
 fn result(reflector: &str, method: &str, device: &str, psnr_db: &[f64], ms: f64) -> MethodResult {
-    let eye = |(eye, &psnr_db): (usize, &f64)| EyeError { eye, psnr_db, mse: 3.5, max_abs: 9, pixels: 1000 };
+    let eye = |(eye, &psnr_db): (usize, &f64)| EyeError {
+        eye,
+        psnr_db,
+        mse: 3.5,
+        rel_mse: 0.01,
+        flip: 0.05,
+        ssim: 0.9,
+        share_over_tenth: 0.02,
+        max_abs: 9,
+        pixels: 1000,
+    };
     MethodResult {
         reflector: reflector.to_owned(),
         method: method.to_owned(),
@@ -89,7 +99,7 @@ fn json_has_exactly_the_properties_of_the_schema() {
     for report in [with_nulls, report(vec![result("teapot", BASELINE_METHOD, "GPU", &[20.0], 1.0)])] {
         let json = report.to_json().unwrap();
         check(&serde_json::from_str(&json).unwrap(), &schema, "report");
-        assert!(json.starts_with("{\n  \"schema\": \"lfslab-report/1\""), "{json}");
+        assert!(json.starts_with("{\n  \"schema\": \"lfslab-report/2\""), "{json}");
     }
 }
 
@@ -107,7 +117,7 @@ fn infinite_psnr_is_null_and_so_is_its_mean() {
 fn numbers_that_json_cannot_hold_are_refused() {
     let mut report = report(vec![result("teapot", "slabs", "CPU", &[30.0], 10.0)]);
     report.results[0].eyes[0].mse = f64::NAN;
-    for outcome in [report.to_json(), report.to_html(&[]), report.error_time_svg()] {
+    for outcome in [report.to_json(), report.to_html(&[]), report.error_time_svg(), report.error_bytes_svg()] {
         let Err(ReportError::InvalidArgument { what, .. }) = outcome else { panic!("{outcome:?}") };
         assert_eq!(what, "mean squared error of eye 0 of slabs on teapot");
     }
