@@ -11,22 +11,27 @@
 
 #![forbid(unsafe_code)]
 
+mod cube_textures;
 mod cubes;
 mod error;
 mod gpu;
+mod layers;
 mod pass;
 mod probe;
+mod slab_texture;
 mod storage;
 mod target;
 mod uniforms;
 mod windows;
 
+pub use cube_textures::CubePicture;
 pub use cubes::Proxy;
 pub use error::GpuError;
-pub use gpu::{Gpu, adapter_lines};
+pub use gpu::{DeviceOptions, Gpu, adapter_lines};
 pub use pass::{MirrorMesh, ReflectionPass};
 pub use probe::{Probe, read_probes};
-pub use storage::{SlabTexture, Storage};
+pub use slab_texture::SlabTexture;
+pub use storage::Storage;
 pub use target::Target;
 
 #[cfg(doctest)]

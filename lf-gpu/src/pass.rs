@@ -6,7 +6,8 @@ use lf_math::{Pinhole, TriangleMesh, near_plane};
 use crate::cubes::CubeShader;
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::storage::{SlabTexture, Storage};
+use crate::slab_texture::SlabTexture;
+use crate::storage::Storage;
 use crate::target::Target;
 use crate::uniforms::FrameUniform;
 
@@ -30,6 +31,8 @@ pub struct ReflectionPass {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SlabShader {
     pub(crate) storage: Storage,
+    /// Whether several slices share a layer of an array.
+    pub(crate) shared: bool,
     /// Whether images have windows or cameras are left out.
     pub(crate) cropped: bool,
 }
@@ -39,12 +42,14 @@ pub(crate) struct SlabShader {
 pub(crate) enum Shader {
     Slabs(SlabShader),
     Cube(CubeShader),
+    Flat,
 }
 
 impl SlabShader {
     fn source(self) -> String {
         let storage = match self.storage {
             Storage::Bc1Volume => include_str!("shaders/volume.wgsl"),
+            _ if self.shared => include_str!("shaders/shared.wgsl"),
             Storage::Bc1Array | Storage::Rgba8Array | Storage::Rgba16FArray => include_str!("shaders/array.wgsl"),
         };
         let texels = match self.storage {
@@ -62,6 +67,7 @@ pub(crate) fn shader_source(shader: Shader, probe: bool) -> String {
     let mut source = match shader {
         Shader::Slabs(slabs) => slabs.source(),
         Shader::Cube(cube) => cube.source(),
+        Shader::Flat => include_str!("shaders/flat.wgsl").to_owned(),
     };
     source += include_str!("shaders/reflect.wgsl");
     if probe {
@@ -122,6 +128,14 @@ impl ReflectionPass {
             let resources = texture.bindings(&sampler);
             Self::new(gpu, &shader_source(Shader::Slabs(texture.shader()), false), &resources)
         })
+    }
+
+    /// A white mirror, to tell what a frame costs beside its reflections.
+    ///
+    /// # Errors
+    /// If the device refuses the pipeline.
+    pub fn flat(gpu: &Gpu) -> Result<Self, GpuError> {
+        gpu.checked("the white pipeline", || Self::new(gpu, &shader_source(Shader::Flat, false), &[]))
     }
 
     /// `resources` are the environment's, beside the frame's uniform at binding 0.

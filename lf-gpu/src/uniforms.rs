@@ -6,6 +6,7 @@ use lf_compress::PackedLightField;
 use lf_compress::volume::SlabLayout;
 use lf_math::{Pinhole, Slab};
 
+use crate::layers::Layers;
 use crate::windows::{NO_MASK, TablePlace, WindowTable};
 
 /// `Frame` of reflect.wgsl.
@@ -44,6 +45,8 @@ pub(crate) struct SlabUniform {
 pub(crate) struct SlabsUniform {
     pub(crate) texel_scale: Vec3,
     pub(crate) padding: f32,
+    pub(crate) grid: [u32; 2],
+    pub(crate) more_padding: [u32; 2],
     pub(crate) faces: [SlabUniform; 6],
 }
 
@@ -64,9 +67,10 @@ impl FrameUniform {
 }
 
 impl SlabsUniform {
-    pub(crate) fn new(field: &PackedLightField, table: Option<&WindowTable>) -> Self {
+    pub(crate) fn new(field: &PackedLightField, layers: &Layers, table: Option<&WindowTable>) -> Self {
         let mut uniform = Self::zeroed();
-        uniform.texel_scale = Vec3::from(field.layout().size().map(|n| 1.0 / n as f32));
+        uniform.texel_scale = Vec3::from(layers.size().map(|n| 1.0 / n as f32));
+        uniform.grid = layers.grid();
         for (number, (slab, layout)) in field.geometry().slabs().iter().zip(field.layout().slabs()).enumerate() {
             let place = table.map_or(TablePlace { columns: 0, rows: 0, mask: NO_MASK }, |table| table.place(number));
             uniform.faces[usize::from(slab.face().index())] = SlabUniform::new(slab, layout, place);
@@ -103,7 +107,7 @@ mod tests {
     use super::*;
     use std::mem::{offset_of, size_of};
 
-    use crate::cubes::{CubeShader, CubeUniform};
+    use crate::cubes::{CubeShader, CubeUniform, Depths};
     use crate::pass::{Shader, SlabShader, shader_source};
     use crate::storage::Storage;
 
@@ -121,13 +125,17 @@ mod tests {
     #[test]
     fn every_shader_is_valid() {
         use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+        /// `unpack2x16float`, which only old OpenGL lacks.
+        const HALF_FLOATS: Capabilities = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
         let slabs = Storage::ALL
             .into_iter()
-            .flat_map(|storage| [false, true].map(|cropped| Shader::Slabs(SlabShader { storage, cropped })));
-        for shader in slabs.chain(CubeShader::ALL.map(Shader::Cube)) {
+            .flat_map(|storage| [false, true].map(|shared| (storage, shared)))
+            .flat_map(|(storage, shared)| [false, true].map(|cropped| SlabShader { storage, shared, cropped }))
+            .map(Shader::Slabs);
+        for shader in slabs.chain(CubeShader::ALL.map(Shader::Cube)).chain([Shader::Flat]) {
             for probe in [false, matches!(shader, Shader::Slabs(_))] {
                 let module = parsed(&shader_source(shader, probe));
-                Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).expect("valid");
+                Validator::new(ValidationFlags::all(), HALF_FLOATS).validate(&module).expect("valid");
             }
         }
     }
@@ -141,7 +149,7 @@ mod tests {
 
     #[test]
     fn rust_and_wgsl_agree_on_every_offset() {
-        let slabs = SlabShader { storage: Storage::Bc1Volume, cropped: true };
+        let slabs = SlabShader { storage: Storage::Bc1Volume, shared: false, cropped: true };
         let module = parsed(&shader_source(Shader::Slabs(slabs), true));
         same_layout!(&module, "Frame", FrameUniform, clip_from_cell, eye, padding);
         same_layout!(
@@ -164,9 +172,23 @@ mod tests {
             padding,
             table
         );
-        same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, faces);
+        same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, grid, more_padding, faces);
         same_layout!(&module, "Probe", ProbeUniform, uv, camera, face, padding);
-        let module = parsed(&shader_source(Shader::Cube(CubeShader::March), false));
-        same_layout!(&module, "Cube", CubeUniform, center, radius, low, near, high, far, steps, halvings, padding);
+        let module = parsed(&shader_source(Shader::Cube(CubeShader::March(Depths::Texture)), false));
+        same_layout!(
+            &module,
+            "Cube",
+            CubeUniform,
+            center,
+            radius,
+            low,
+            near,
+            high,
+            far,
+            steps,
+            halvings,
+            depth_size,
+            padding
+        );
     }
 }

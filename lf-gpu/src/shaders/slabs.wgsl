@@ -1,5 +1,5 @@
 // Light field slabs: Figs. 6 and 8 of Yu, Yang & McMillan in one pass. CPU twins: lf-math/src/slab.rs, lf-ibr/src/slabs.rs.
-// `fetch` comes from volume.wgsl or array.wgsl, `fetch_camera` and `make_up` from whole.wgsl or cropped.wgsl, `displayed` from
+// `fetch` comes from volume.wgsl, array.wgsl or shared.wgsl, `fetch_camera` and `make_up` from whole.wgsl or cropped.wgsl, `displayed` from
 // srgb.wgsl or linear.wgsl.
 
 // One slab; pairs are along (s, t) or (u, v). Mirrors `SlabUniform` in uniforms.rs.
@@ -29,9 +29,12 @@ struct Slab {
 }
 
 struct Slabs {
-    // One over the volume's size in texels.
+    // One over the texture's size in texels.
     texel_scale: vec3f,
     padding: f32,
+    // Slices along the rows and columns of a layer.
+    grid: vec2u,
+    more_padding: vec2u,
     // By face: +X -X +Y -Y +Z -Z.
     faces: array<Slab, 6>,
 }
