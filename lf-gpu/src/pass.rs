@@ -33,8 +33,32 @@ pub(crate) struct SlabShader {
     pub(crate) storage: Storage,
     /// Whether several slices share a layer of an array.
     pub(crate) shared: bool,
-    /// Whether images have windows or cameras are left out.
-    pub(crate) cropped: bool,
+    pub(crate) windows: Windows,
+}
+
+/// What a light field leaves out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Windows {
+    /// Nothing.
+    Whole,
+    /// Texels outside windows.
+    Cropped,
+    /// Single cameras, too.
+    Masked,
+}
+
+impl Windows {
+    #[cfg(test)]
+    pub(crate) const ALL: [Self; 3] = [Self::Whole, Self::Cropped, Self::Masked];
+
+    fn source(self) -> String {
+        let cropped = include_str!("shaders/cropped.wgsl");
+        match self {
+            Self::Whole => include_str!("shaders/whole.wgsl").to_owned(),
+            Self::Cropped => [cropped, include_str!("shaders/unmasked.wgsl")].concat(),
+            Self::Masked => [cropped, include_str!("shaders/masked.wgsl")].concat(),
+        }
+    }
 }
 
 /// What a mirror shows.
@@ -56,9 +80,7 @@ impl SlabShader {
             Storage::Rgba16FArray => include_str!("shaders/linear.wgsl"),
             _ => include_str!("shaders/srgb.wgsl"),
         };
-        let windows =
-            if self.cropped { include_str!("shaders/cropped.wgsl") } else { include_str!("shaders/whole.wgsl") };
-        [include_str!("shaders/slabs.wgsl"), storage, windows, texels].concat()
+        [include_str!("shaders/slabs.wgsl"), storage, &self.windows.source(), texels].concat()
     }
 }
 

@@ -8,7 +8,7 @@ use lf_math::LightFieldGeometry;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{SlabShader, buffer};
+use crate::pass::{SlabShader, Windows, buffer};
 use crate::storage::{Plan, Storage};
 use crate::uniforms::SlabsUniform;
 use crate::windows::WindowTable;
@@ -21,9 +21,15 @@ pub struct SlabTexture {
     view: wgpu::TextureView,
     uniform: wgpu::Buffer,
     /// Where the windows of cropped images lie; `None` if all images are whole.
-    windows: Option<wgpu::Buffer>,
+    windows: Option<DeviceWindows>,
     plan: Plan,
     geometry: LightFieldGeometry,
+}
+
+/// A window table on the device.
+struct DeviceWindows {
+    rows: wgpu::Buffer,
+    masked: bool,
 }
 
 impl SlabTexture {
@@ -66,8 +72,9 @@ impl SlabTexture {
             let table = WindowTable::new(field.layout());
             let slabs = SlabsUniform::new(field, &plan.layers, table.as_ref());
             let uniform = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
-            let rows = |table: WindowTable| {
-                buffer(gpu, "windows", bytemuck::cast_slice(table.rows()), wgpu::BufferUsages::STORAGE)
+            let rows = |table: WindowTable| DeviceWindows {
+                rows: buffer(gpu, "windows", bytemuck::cast_slice(table.rows()), wgpu::BufferUsages::STORAGE),
+                masked: table.is_masked(),
             };
             let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() });
             (view, uniform, table.map(rows))
@@ -82,14 +89,19 @@ impl SlabTexture {
             (2, wgpu::BindingResource::Sampler(sampler)),
             (3, wgpu::BindingResource::TextureView(&self.view)),
         ];
-        all.extend(self.windows.as_ref().map(|windows| (5, windows.as_entire_binding())));
+        all.extend(self.windows.as_ref().map(|windows| (5, windows.rows.as_entire_binding())));
         all
     }
 
     /// Which variant of the shader it needs.
     pub(crate) fn shader(&self) -> SlabShader {
         let shared = self.plan.layers.grid() != [1, 1];
-        SlabShader { storage: self.plan.storage, shared, cropped: self.windows.is_some() }
+        let windows = match &self.windows {
+            None => Windows::Whole,
+            Some(table) if table.masked => Windows::Masked,
+            Some(_) => Windows::Cropped,
+        };
+        SlabShader { storage: self.plan.storage, shared, windows }
     }
 
     /// The cell and the slabs.

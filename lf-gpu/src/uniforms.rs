@@ -31,11 +31,11 @@ pub(crate) struct SlabUniform {
     pub(crate) disparity: Vec2,
     pub(crate) plane: f32,
     pub(crate) present: u32,
-    pub(crate) pitch: [u32; 2],
-    pub(crate) cameras_per_slice: [u32; 2],
-    pub(crate) first_slice: u32,
-    pub(crate) groups_s: u32,
-    pub(crate) padding: [u32; 2],
+    pub(crate) pitch: Vec2,
+    pub(crate) cameras_per_slice: Vec2,
+    pub(crate) slices_per_group: Vec2,
+    pub(crate) first_slice: f32,
+    pub(crate) padding: f32,
     pub(crate) table: [u32; 4],
 }
 
@@ -92,11 +92,12 @@ impl SlabUniform {
             disparity: slab.disparity(),
             plane: slab.plane(),
             present: 1,
-            pitch: slab.resolution().map(|texels| texels.next_multiple_of(4)),
-            cameras_per_slice: layout.tiling().cameras_per_tile(),
-            first_slice: layout.first_slice(),
-            groups_s: layout.groups()[0],
-            padding: [0; 2],
+            // Whole numbers far below 2²⁴, which floats hold exactly; vector units have no integer division.
+            pitch: slab.resolution().map(|texels| texels.next_multiple_of(4) as f32).into(),
+            cameras_per_slice: layout.tiling().cameras_per_tile().map(|cameras| cameras as f32).into(),
+            slices_per_group: Vec2::new(1.0, layout.groups()[0] as f32),
+            first_slice: layout.first_slice() as f32,
+            padding: 0.0,
             table: [place.columns, place.rows, place.mask, 0],
         }
     }
@@ -108,7 +109,7 @@ mod tests {
     use std::mem::{offset_of, size_of};
 
     use crate::cubes::{CubeShader, CubeUniform, Depths};
-    use crate::pass::{Shader, SlabShader, shader_source};
+    use crate::pass::{Shader, SlabShader, Windows, shader_source};
     use crate::storage::Storage;
 
     /// Offsets of a WGSL struct's members and its size, as naga lays it out.
@@ -130,7 +131,7 @@ mod tests {
         let slabs = Storage::ALL
             .into_iter()
             .flat_map(|storage| [false, true].map(|shared| (storage, shared)))
-            .flat_map(|(storage, shared)| [false, true].map(|cropped| SlabShader { storage, shared, cropped }))
+            .flat_map(|(storage, shared)| Windows::ALL.map(|windows| SlabShader { storage, shared, windows }))
             .map(Shader::Slabs);
         for shader in slabs.chain(CubeShader::ALL.map(Shader::Cube)).chain([Shader::Flat]) {
             for probe in [false, matches!(shader, Shader::Slabs(_))] {
@@ -149,7 +150,7 @@ mod tests {
 
     #[test]
     fn rust_and_wgsl_agree_on_every_offset() {
-        let slabs = SlabShader { storage: Storage::Bc1Volume, shared: false, cropped: true };
+        let slabs = SlabShader { storage: Storage::Bc1Volume, shared: false, windows: Windows::Masked };
         let module = parsed(&shader_source(Shader::Slabs(slabs), true));
         same_layout!(&module, "Frame", FrameUniform, clip_from_cell, eye, padding);
         same_layout!(
@@ -167,8 +168,8 @@ mod tests {
             present,
             pitch,
             cameras_per_slice,
+            slices_per_group,
             first_slice,
-            groups_s,
             padding,
             table
         );

@@ -1,15 +1,17 @@
 //! What a frame of slabs costs beside one of an environment map, on this machine's GPU: `docs/cost.md`.
 //!
 //! `cargo run --release -p lf-tests --example cost`, or with a light field of your own, `… --example cost -- room.lfslab`. Every round
-//! draws one frame of each method; ratios are of the same round, so that what slows the machine down for a while slows both.
+//! draws one frame of each method; ratios are of the same round, so that what slows the machine down for a while slows both. Where the
+//! adapter is a program, `--processor-time` counts what this process takes on all cores, whatever else the machine does.
 
 #![forbid(unsafe_code)]
 
 use std::error::Error;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Parser;
+use cpu_time::ProcessTime;
 use glam::{DVec3, Vec3};
 use lf_compress::bc1::Quality;
 use lf_compress::format::{Container, Limits, TexelEncoding};
@@ -30,6 +32,9 @@ struct Arguments {
     /// Frames of each method
     #[arg(long, default_value_t = 31)]
     rounds: usize,
+    /// Counts processor time, not time: for software adapters
+    #[arg(long)]
+    processor_time: bool,
 }
 
 /// Texels along the edge of the environment maps' faces.
@@ -51,6 +56,7 @@ struct Stage<'a> {
     target: Target,
     camera: Pinhole,
     rounds: usize,
+    processor_time: bool,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -61,7 +67,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let eye = Vec3::new(1.1, 0.6, 1.6).normalize() * 3.2 * half;
     let camera = Pinhole::look_at(eye, Vec3::ZERO, 0.67, arguments.size, arguments.size)?;
     let target = Target::new(&gpu, arguments.size, arguments.size)?;
-    let stage = Stage { gpu: &gpu, target, camera, rounds: arguments.rounds };
+    let Arguments { rounds, processor_time, .. } = arguments;
+    let stage = Stage { gpu: &gpu, target, camera, rounds, processor_time };
     println!("{}, {2}×{2} pixels, {} frames of each\n", gpu.description(), stage.rounds, arguments.size);
 
     let mut methods = maps(&gpu)?;
@@ -137,15 +144,21 @@ impl Stage<'_> {
         }
         for round in 0..=self.rounds {
             for method in methods.iter_mut() {
-                let start = Instant::now();
-                method.pass.draw(self.gpu, &self.target, &mesh, &self.camera)?;
-                self.gpu.wait()?;
+                let taken = self.frame(method, &mesh)?;
                 if round > 0 {
-                    method.times.push(1e3 * start.elapsed().as_secs_f64());
+                    method.times.push(1e3 * taken.as_secs_f64());
                 }
             }
         }
         Ok(())
+    }
+
+    /// Draws a frame, waits for it and says how long that took.
+    fn frame(&self, method: &Method, mesh: &MirrorMesh) -> Result<Duration, GpuError> {
+        let (start, busy) = (Instant::now(), ProcessTime::now());
+        method.pass.draw(self.gpu, &self.target, mesh, &self.camera)?;
+        self.gpu.wait()?;
+        Ok(if self.processor_time { busy.elapsed() } else { start.elapsed() })
     }
 }
 
