@@ -6,8 +6,8 @@
 //! slabs (Figs. 6 and 8 of Yu, Yang & McMillan); one fetch for the environment map, also where it is projected on a sphere or a box
 //! ([`Proxy`]); a distance cube takes a fetch for each step of its [`lf_math::Search`].
 //!
-//! Every shader has a readable twin in `lf-ibr`. Cost is the covered pixels times the fetches; the scene and, but for its
-//! vertices, the mirror do not matter. Windows and animation are not this crate's job.
+//! Every shader has a readable twin in `lf-ibr`. Cost is the shaded pixels times the fetches: the scene does not matter, the
+//! mirror by its vertices, and by triangles so small that adapters shade pixels beside them. Windows and animation are not this crate's job.
 
 #![forbid(unsafe_code)]
 
