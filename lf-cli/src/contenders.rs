@@ -11,7 +11,7 @@ use glam::Vec3;
 use lf_capture::Options;
 use lf_compress::bc1::Quality;
 use lf_compress::{PackOptions, PackedCube, PackedLightField};
-use lf_gpu::{Gpu, GpuError, Proxy, ReflectionPass, SlabTexture, Storage};
+use lf_gpu::{CubePicture, Gpu, GpuError, Proxy, ReflectionPass, SlabTexture, Storage};
 use lf_ibr::{
     BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, SlabField, SphereCube,
 };
@@ -118,18 +118,20 @@ fn one_cube(source: &Source, budget: &Budget<'_>, gpu: Option<&Gpu>, each: &mut 
         hand("distance cube", format!("{size}, depth blocks; {steps}"), packed.bytes(), &field)?;
     }
     let Some(gpu) = gpu else { return Ok(()) };
-    let mut hand = |name, parameters: String, texel_bytes: u64, pass: Result<ReflectionPass, GpuError>| {
-        let (bytes, pass) = (6 * texel_bytes * u64::from(edge).pow(2), pass?);
+    let mut hand = |name, parameters: String, bytes: u64, pass: Result<ReflectionPass, GpuError>| {
+        let pass = pass?;
         each(&Contender { name, parameters, bytes, on_disk: None, preparation_s, drawn: Drawn::OnGpu(gpu, &pass) })
     };
-    let (map, size) = (cube.radiance(), format!("{edge}², RGBA8"));
+    let map = CubePicture::from(&packed);
+    let (map_bytes, depth_bytes) = (map.bytes(gpu), (packed.bytes() - picture) as u64);
+    let size = format!("{edge}², {}", if map.stays_blocks(gpu) { "BC1" } else { "RGBA8" });
     let proxy = |proxy| ReflectionPass::proxy(gpu, map, Vec3::ZERO, proxy);
-    hand(lf_report::BASELINE_METHOD, size.clone(), 4, ReflectionPass::environment(gpu, map))?;
-    hand("sphere-projected map", size.clone(), 4, proxy(Proxy::Sphere(cube.median_distance())))?;
-    hand("box-projected map", size.clone(), 4, proxy(Proxy::Box(cube.median_box())))?;
+    hand(lf_report::BASELINE_METHOD, size.clone(), map_bytes, ReflectionPass::environment(gpu, map))?;
+    hand("sphere-projected map", size.clone(), map_bytes, proxy(Proxy::Sphere(cube.median_distance())))?;
+    hand("box-projected map", size.clone(), map_bytes, proxy(Proxy::Box(cube.median_box())))?;
     for (search, steps) in SEARCHES {
-        let pass = ReflectionPass::distance_cube(gpu, &cube, search);
-        hand("distance cube", format!("{size}, R16F depths; {steps}"), 6, pass)?;
+        let pass = ReflectionPass::packed_distance_cube(gpu, &packed, search);
+        hand("distance cube", format!("{size}, depth blocks; {steps}"), map_bytes + depth_bytes, pass)?;
     }
     Ok(())
 }

@@ -68,6 +68,27 @@ fn a_captured_file_is_shown_checked_and_rendered() {
     }
 }
 
+/// Named driver files are the only ones that the Vulkan loader takes.
+#[test]
+#[cfg(target_os = "linux")]
+fn without_an_adapter_the_cpu_draws_and_says_so() {
+    let folder = TempDir::new().unwrap();
+    let file = small_file(folder.path());
+    let picture = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let render = |name: &str, device: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lfslab"));
+        command.args(["render", &file, "--size", "48", "--out", &picture(name)]).args(device);
+        command.env("VK_DRIVER_FILES", "nowhere.json").env("VK_ICD_FILENAMES", "nowhere.json");
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stderr)
+    };
+    let said = render("without.png", &[]);
+    assert!(said.contains("device   CPU: no GPU adapter found") && said.contains("mesa-vulkan-drivers"), "{said}");
+    render("asked.png", &["--cpu"]);
+    assert_eq!(fs::read(picture("without.png")).unwrap(), fs::read(picture("asked.png")).unwrap());
+}
+
 /// The error against the scene that was captured is the smaller one; with noise it is said how much.
 #[test]
 fn a_picture_is_held_against_a_scene() {

@@ -2,10 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use half::f16;
-use lf_math::{CubeMap, DistanceCube, Image, Search};
-use wgpu::util::DeviceExt;
+use lf_compress::PackedCube;
+use lf_math::{DistanceCube, Search};
 
+use crate::cube_textures::{CubeDepths, CubePicture, DeviceDepths};
 use crate::error::GpuError;
 use crate::gpu::Gpu;
 use crate::pass::{ReflectionPass, Shader, bilinear_sampler, buffer, shader_source};
@@ -25,8 +25,15 @@ pub(crate) enum CubeShader {
     Infinite,
     Sphere,
     Box,
-    FixedPoint,
-    March,
+    FixedPoint(Depths),
+    March(Depths),
+}
+
+/// How the shader gets at depths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Depths {
+    Texture,
+    Blocks,
 }
 
 /// `Cube` of cube.wgsl.
@@ -41,22 +48,40 @@ pub(crate) struct CubeUniform {
     pub(crate) far: f32,
     pub(crate) steps: u32,
     pub(crate) halvings: u32,
-    pub(crate) padding: [u32; 2],
+    pub(crate) depth_size: u32,
+    pub(crate) padding: u32,
+}
+
+impl Depths {
+    fn source(self) -> String {
+        let stored = match self {
+            Self::Texture => include_str!("shaders/depth_texture.wgsl"),
+            Self::Blocks => include_str!("shaders/depth_blocks.wgsl"),
+        };
+        [stored, include_str!("shaders/depths.wgsl")].concat()
+    }
 }
 
 impl CubeShader {
     #[cfg(test)]
-    pub(crate) const ALL: [Self; 5] = [Self::Infinite, Self::Sphere, Self::Box, Self::FixedPoint, Self::March];
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Infinite,
+        Self::Sphere,
+        Self::Box,
+        Self::FixedPoint(Depths::Texture),
+        Self::FixedPoint(Depths::Blocks),
+        Self::March(Depths::Texture),
+        Self::March(Depths::Blocks),
+    ];
 
     pub(crate) fn source(self) -> String {
         let cube = include_str!("shaders/cube.wgsl");
-        let depths = include_str!("shaders/depths.wgsl");
         match self {
             Self::Infinite => include_str!("shaders/environment.wgsl").to_owned(),
             Self::Sphere => [cube, include_str!("shaders/sphere.wgsl")].concat(),
             Self::Box => [cube, include_str!("shaders/box.wgsl")].concat(),
-            Self::FixedPoint => [cube, depths, include_str!("shaders/fixed_point.wgsl")].concat(),
-            Self::March => [cube, depths, include_str!("shaders/march.wgsl")].concat(),
+            Self::FixedPoint(depths) => [cube, &depths.source(), include_str!("shaders/fixed_point.wgsl")].concat(),
+            Self::March(depths) => [cube, &depths.source(), include_str!("shaders/march.wgsl")].concat(),
         }
     }
 }
@@ -66,9 +91,9 @@ impl ReflectionPass {
     ///
     /// # Errors
     /// If the device refuses the cube texture or the pipeline.
-    pub fn environment(gpu: &Gpu, cube: &CubeMap) -> Result<Self, GpuError> {
+    pub fn environment<'a>(gpu: &Gpu, picture: impl Into<CubePicture<'a>>) -> Result<Self, GpuError> {
+        let view = picture.into().upload(gpu)?;
         gpu.checked("the environment pipeline", || {
-            let view = picture(gpu, cube);
             let sampler = bilinear_sampler(gpu);
             let resources =
                 [(1, wgpu::BindingResource::TextureView(&view)), (2, wgpu::BindingResource::Sampler(&sampler))];
@@ -80,7 +105,12 @@ impl ReflectionPass {
     ///
     /// # Errors
     /// If the device refuses the cube texture or the pipeline.
-    pub fn proxy(gpu: &Gpu, cube: &CubeMap, center: Vec3, proxy: Proxy) -> Result<Self, GpuError> {
+    pub fn proxy<'a>(
+        gpu: &Gpu,
+        picture: impl Into<CubePicture<'a>>,
+        center: Vec3,
+        proxy: Proxy,
+    ) -> Result<Self, GpuError> {
         let mut uniform = CubeUniform { center, ..CubeUniform::zeroed() };
         let shader = match proxy {
             Proxy::Sphere(radius) => {
@@ -92,7 +122,7 @@ impl ReflectionPass {
                 CubeShader::Box
             }
         };
-        Self::cube(gpu, cube, None, &uniform, shader)
+        Self::cube(gpu, picture.into(), None, &uniform, shader)
     }
 
     /// Reflections from a distance cube. Its depths become half floats.
@@ -100,27 +130,49 @@ impl ReflectionPass {
     /// # Errors
     /// If the device refuses the cube textures or the pipeline.
     pub fn distance_cube(gpu: &Gpu, cube: &DistanceCube, search: Search) -> Result<Self, GpuError> {
+        let (picture, depths) = (cube.radiance().into(), CubeDepths::Values(cube.inverse_depths()));
+        Self::searched(gpu, cube, picture, depths, search)
+    }
+
+    /// Reflections from a distance cube whose depths stay in blocks, its colours where the device samples those. It takes the
+    /// bytes of the [picture](CubePicture::bytes) and of the blocks of depths.
+    ///
+    /// # Errors
+    /// If the device refuses the cube texture, the buffer or the pipeline.
+    pub fn packed_distance_cube(gpu: &Gpu, cube: &PackedCube, search: Search) -> Result<Self, GpuError> {
+        Self::searched(gpu, &cube.decode()?, cube.into(), CubeDepths::Planes(cube.inverse_depths()), search)
+    }
+
+    fn searched(
+        gpu: &Gpu,
+        cube: &DistanceCube,
+        picture: CubePicture<'_>,
+        depths: CubeDepths<'_>,
+        search: Search,
+    ) -> Result<Self, GpuError> {
         let [least, largest] = cube.depth_range().unwrap_or([2.0, 0.5]);
         let (near, far) = (0.5 * least, 4.0 * largest);
         let radius = cube.median_distance().min(far);
+        let from = if matches!(depths, CubeDepths::Planes(_)) { Depths::Blocks } else { Depths::Texture };
         let (shader, steps, halvings) = match search {
-            Search::FixedPoint(steps) => (CubeShader::FixedPoint, steps, 0),
-            Search::March { steps, halvings } => (CubeShader::March, steps, halvings),
+            Search::FixedPoint(steps) => (CubeShader::FixedPoint(from), steps, 0),
+            Search::March { steps, halvings } => (CubeShader::March(from), steps, halvings),
         };
-        let zero = CubeUniform::zeroed();
-        let uniform = CubeUniform { center: cube.position(), radius, near, far, steps, halvings, ..zero };
-        Self::cube(gpu, cube.radiance(), Some(cube.inverse_depths()), &uniform, shader)
+        let (zero, depth_size) = (CubeUniform::zeroed(), depths.size());
+        let uniform = CubeUniform { center: cube.position(), radius, near, far, steps, halvings, depth_size, ..zero };
+        Self::cube(gpu, picture, Some(depths), &uniform, shader)
     }
 
     fn cube(
         gpu: &Gpu,
-        cube: &CubeMap,
-        depths: Option<&[Image<f32>; 6]>,
+        picture: CubePicture<'_>,
+        depths: Option<CubeDepths<'_>>,
         uniform: &CubeUniform,
         shader: CubeShader,
     ) -> Result<Self, GpuError> {
+        let view = picture.upload(gpu)?;
+        let depths = depths.map(|depths| depths.upload(gpu)).transpose()?;
         gpu.checked("the cube map pipeline", || {
-            let (view, depths) = (picture(gpu, cube), depths.map(|depths| inverse_depths(gpu, depths)));
             let sampler = bilinear_sampler(gpu);
             let nearest = gpu.device.create_sampler(&wgpu::SamplerDescriptor::default());
             let uniform = buffer(gpu, "cube", bytemuck::bytes_of(uniform), wgpu::BufferUsages::UNIFORM);
@@ -129,40 +181,15 @@ impl ReflectionPass {
                 (2, wgpu::BindingResource::Sampler(&sampler)),
                 (3, uniform.as_entire_binding()),
             ];
-            if let Some(depths) = &depths {
-                resources.push((4, wgpu::BindingResource::TextureView(depths)));
-                resources.push((5, wgpu::BindingResource::Sampler(&nearest)));
+            match &depths {
+                Some(DeviceDepths::Texture(depths)) => {
+                    resources.push((4, wgpu::BindingResource::TextureView(depths)));
+                    resources.push((5, wgpu::BindingResource::Sampler(&nearest)));
+                }
+                Some(DeviceDepths::Buffer(depths)) => resources.push((4, depths.as_entire_binding())),
+                None => {}
             }
             Self::new(gpu, &shader_source(Shader::Cube(shader), false), &resources)
         })
     }
-}
-
-fn picture(gpu: &Gpu, cube: &CubeMap) -> wgpu::TextureView {
-    let texels: Vec<[u8; 4]> = cube.faces().iter().flat_map(Image::texels).copied().collect();
-    texture(gpu, cube.size(), wgpu::TextureFormat::Rgba8Unorm, bytemuck::cast_slice(&texels))
-}
-
-fn inverse_depths(gpu: &Gpu, faces: &[Image<f32>; 6]) -> wgpu::TextureView {
-    let half = |inverse: &f32| f16::from_f32(inverse.min(f16::MAX.to_f32())).to_bits();
-    let texels: Vec<u16> = faces.iter().flat_map(|face| face.texels().iter().map(half)).collect();
-    texture(gpu, faces[0].width(), wgpu::TextureFormat::R16Float, bytemuck::cast_slice(&texels))
-}
-
-/// A cube texture of the faces in order.
-fn texture(gpu: &Gpu, size: u32, format: wgpu::TextureFormat, bytes: &[u8]) -> wgpu::TextureView {
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("cube map"),
-        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 6 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
-    let dimension = Some(wgpu::TextureViewDimension::Cube);
-    texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
 }

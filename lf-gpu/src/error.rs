@@ -21,9 +21,33 @@ pub enum GpuError {
         storage: Storage,
         /// The device.
         adapter: String,
-        /// What is missing.
+        /// What is missing, and what to do.
         why: String,
     },
+    /// A texture would take more than [`DeviceOptions::max_texture_bytes`](crate::DeviceOptions::max_texture_bytes).
+    #[error(
+        "{what} takes {bytes} bytes, more than the budget of {budget}: crop the light field, capture fewer cameras or texels, or \
+         allow more (max_texture_bytes)"
+    )]
+    OverBudget {
+        /// The texture.
+        what: String,
+        /// Bytes that it takes on the device.
+        bytes: u64,
+        /// Bytes that it may take.
+        budget: u64,
+    },
+    /// The device has no memory left.
+    #[error(
+        "the GPU is out of memory for {what}; close other programs that use it, or ask for less (max_texture_bytes)"
+    )]
+    OutOfMemory {
+        /// What was asked.
+        what: &'static str,
+    },
+    /// The device is gone with everything on it: its driver was reset, it was unplugged, or it was given back.
+    #[error("the GPU device was lost; open it again, or draw on the CPU")]
+    Lost,
     /// The device refused a resource or a command.
     #[error("the GPU refused {what}: {why}")]
     Refused {

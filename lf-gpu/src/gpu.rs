@@ -5,12 +5,34 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::GpuError;
 
+/// How much of an adapter a device may use: by default all that it has, and 4 GiB a texture.
+///
+/// Every limit is the adapter's own where that is lower. A light field goes into the first [`Storage`](crate::Storage) that
+/// fits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DeviceOptions {
+    /// Whether textures keep BC1 blocks.
+    pub blocks: bool,
+    /// Whether volume textures do, too.
+    pub block_volumes: bool,
+    /// Texels along the edge of a 2D texture.
+    pub max_texture_dimension_2d: u32,
+    /// Texels along the edge of a volume texture.
+    pub max_texture_dimension_3d: u32,
+    /// Layers of an array texture.
+    pub max_texture_array_layers: u32,
+    /// A texture of more bytes is refused before the device is asked for it: some drivers abort the program instead of
+    /// reporting that memory is out.
+    pub max_texture_bytes: u64,
+}
+
 /// An open GPU device.
 pub struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
     lost: Arc<AtomicBool>,
+    max_texture_bytes: u64,
 }
 
 /// Vulkan, Metal and Direct3D 12. OpenGL is left out: a driver we tried claims BC1 in 3D textures and samples black.
@@ -32,29 +54,67 @@ fn describe(info: &wgpu::AdapterInfo) -> String {
     format!("{} ({:?}, {}, {})", info.name, info.device_type, info.backend, driver.trim())
 }
 
+impl Default for DeviceOptions {
+    fn default() -> Self {
+        Self {
+            blocks: true,
+            block_volumes: true,
+            max_texture_dimension_2d: u32::MAX,
+            max_texture_dimension_3d: u32::MAX,
+            max_texture_array_layers: u32::MAX,
+            max_texture_bytes: 4 << 30,
+        }
+    }
+}
+
+impl DeviceOptions {
+    fn features(&self) -> wgpu::Features {
+        let mut wanted = wgpu::Features::empty();
+        wanted.set(wgpu::Features::TEXTURE_COMPRESSION_BC, self.blocks);
+        wanted.set(wgpu::Features::TEXTURE_COMPRESSION_BC_SLICED_3D, self.blocks && self.block_volumes);
+        wanted
+    }
+
+    fn limits(&self, adapter: &wgpu::Limits) -> wgpu::Limits {
+        wgpu::Limits {
+            max_texture_dimension_2d: self.max_texture_dimension_2d.min(adapter.max_texture_dimension_2d),
+            max_texture_dimension_3d: self.max_texture_dimension_3d.min(adapter.max_texture_dimension_3d),
+            max_texture_array_layers: self.max_texture_array_layers.min(adapter.max_texture_array_layers),
+            ..adapter.clone()
+        }
+    }
+}
+
 impl Gpu {
     /// Opens the fastest adapter, with block compression if it has it and with its own limits.
     ///
     /// # Errors
     /// If there is no adapter or it gives no device.
     pub fn new() -> Result<Self, GpuError> {
-        let options = wgpu::RequestAdapterOptions {
+        Self::with_options(&DeviceOptions::default())
+    }
+
+    /// Opens the fastest adapter and uses no more of it than the options say.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_options(options: &DeviceOptions) -> Result<Self, GpuError> {
+        let fastest = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             ..Default::default()
         };
-        let adapter = pollster::block_on(instance().request_adapter(&options))?;
-        let wanted = wgpu::Features::TEXTURE_COMPRESSION_BC | wgpu::Features::TEXTURE_COMPRESSION_BC_SLICED_3D;
+        let adapter = pollster::block_on(instance().request_adapter(&fastest))?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("lf-gpu"),
-            required_features: adapter.features() & wanted,
-            required_limits: adapter.limits(),
+            required_features: adapter.features() & options.features(),
+            required_limits: options.limits(&adapter.limits()),
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))?;
         let lost = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&lost);
         device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
-        Ok(Self { device, queue, info: adapter.get_info(), lost })
+        Ok(Self { device, queue, info: adapter.get_info(), lost, max_texture_bytes: options.max_texture_bytes })
     }
 
     /// Name and API of the adapter, without what some drivers add in brackets.
@@ -75,23 +135,44 @@ impl Gpu {
     /// # Errors
     /// If the device is known to be lost.
     pub fn wait(&self) -> Result<(), GpuError> {
-        if self.lost.load(Ordering::Relaxed) {
-            return Err(GpuError::Refused { what: "to go on", why: "the device was lost".to_owned() });
-        }
+        self.alive()?;
         let refused = |e: wgpu::PollError| GpuError::Refused { what: "to finish its work", why: e.to_string() };
-        self.device.poll(wgpu::PollType::wait_indefinitely()).map(|_| ()).map_err(refused)
+        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.alive()?;
+        waited.map(|_| ()).map_err(refused)
+    }
+
+    /// Gives the device back. It is lost from now on, as if its driver had been reset: every later call fails with
+    /// [`GpuError::Lost`].
+    pub fn destroy(&self) {
+        self.lost.store(true, Ordering::Relaxed);
+        self.device.destroy();
     }
 
     /// Runs `make` and turns the device's errors into a result.
     pub(crate) fn checked<T>(&self, what: &'static str, make: impl FnOnce() -> T) -> Result<T, GpuError> {
+        self.alive()?;
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let made = make();
         let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
+        // The loss of a device goes by error scopes.
+        self.alive()?;
         match errors.into_iter().flatten().next() {
+            Some(wgpu::Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory { what }),
             Some(error) => Err(GpuError::Refused { what, why: error.to_string() }),
             None => Ok(made),
         }
+    }
+
+    /// Whether a texture is within the budget.
+    pub(crate) fn affords(&self, what: String, bytes: u64) -> Result<(), GpuError> {
+        let budget = self.max_texture_bytes;
+        if bytes > budget { Err(GpuError::OverBudget { what, bytes, budget }) } else { Ok(()) }
+    }
+
+    fn alive(&self) -> Result<(), GpuError> {
+        if self.lost.load(Ordering::Relaxed) { Err(GpuError::Lost) } else { Ok(()) }
     }
 }

@@ -6,27 +6,32 @@
 //! slabs (Figs. 6 and 8 of Yu, Yang & McMillan); one fetch for the environment map, also where it is projected on a sphere or a box
 //! ([`Proxy`]); a distance cube takes a fetch for each step of its [`lf_math::Search`].
 //!
-//! Every shader has a readable twin in `lf-ibr`. Cost is the covered pixels times the fetches; the scene and, but for its
-//! vertices, the mirror do not matter. Windows and animation are not this crate's job.
+//! Every shader has a readable twin in `lf-ibr`. Cost is the shaded pixels times the fetches: the scene does not matter, the
+//! mirror by its vertices, and by triangles so small that adapters shade pixels beside them. Windows and animation are not this crate's job.
 
 #![forbid(unsafe_code)]
 
+mod cube_textures;
 mod cubes;
 mod error;
 mod gpu;
+mod layers;
 mod pass;
 mod probe;
+mod slab_texture;
 mod storage;
 mod target;
 mod uniforms;
 mod windows;
 
+pub use cube_textures::CubePicture;
 pub use cubes::Proxy;
 pub use error::GpuError;
-pub use gpu::{Gpu, adapter_lines};
+pub use gpu::{DeviceOptions, Gpu, adapter_lines};
 pub use pass::{MirrorMesh, ReflectionPass};
 pub use probe::{Probe, read_probes};
-pub use storage::{SlabTexture, Storage};
+pub use slab_texture::SlabTexture;
+pub use storage::Storage;
 pub use target::Target;
 
 #[cfg(doctest)]

@@ -6,7 +6,8 @@ use lf_math::{Pinhole, TriangleMesh, near_plane};
 use crate::cubes::CubeShader;
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::storage::{SlabTexture, Storage};
+use crate::slab_texture::SlabTexture;
+use crate::storage::Storage;
 use crate::target::Target;
 use crate::uniforms::FrameUniform;
 
@@ -30,8 +31,34 @@ pub struct ReflectionPass {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SlabShader {
     pub(crate) storage: Storage,
-    /// Whether images have windows or cameras are left out.
-    pub(crate) cropped: bool,
+    /// Whether several slices share a layer of an array.
+    pub(crate) shared: bool,
+    pub(crate) windows: Windows,
+}
+
+/// What a light field leaves out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Windows {
+    /// Nothing.
+    Whole,
+    /// Texels outside windows.
+    Cropped,
+    /// Single cameras, too.
+    Masked,
+}
+
+impl Windows {
+    #[cfg(test)]
+    pub(crate) const ALL: [Self; 3] = [Self::Whole, Self::Cropped, Self::Masked];
+
+    fn source(self) -> String {
+        let cropped = include_str!("shaders/cropped.wgsl");
+        match self {
+            Self::Whole => include_str!("shaders/whole.wgsl").to_owned(),
+            Self::Cropped => [cropped, include_str!("shaders/unmasked.wgsl")].concat(),
+            Self::Masked => [cropped, include_str!("shaders/masked.wgsl")].concat(),
+        }
+    }
 }
 
 /// What a mirror shows.
@@ -39,21 +66,21 @@ pub(crate) struct SlabShader {
 pub(crate) enum Shader {
     Slabs(SlabShader),
     Cube(CubeShader),
+    Flat,
 }
 
 impl SlabShader {
     fn source(self) -> String {
         let storage = match self.storage {
             Storage::Bc1Volume => include_str!("shaders/volume.wgsl"),
+            _ if self.shared => include_str!("shaders/shared.wgsl"),
             Storage::Bc1Array | Storage::Rgba8Array | Storage::Rgba16FArray => include_str!("shaders/array.wgsl"),
         };
         let texels = match self.storage {
             Storage::Rgba16FArray => include_str!("shaders/linear.wgsl"),
             _ => include_str!("shaders/srgb.wgsl"),
         };
-        let windows =
-            if self.cropped { include_str!("shaders/cropped.wgsl") } else { include_str!("shaders/whole.wgsl") };
-        [include_str!("shaders/slabs.wgsl"), storage, windows, texels].concat()
+        [include_str!("shaders/slabs.wgsl"), storage, &self.windows.source(), texels].concat()
     }
 }
 
@@ -62,6 +89,7 @@ pub(crate) fn shader_source(shader: Shader, probe: bool) -> String {
     let mut source = match shader {
         Shader::Slabs(slabs) => slabs.source(),
         Shader::Cube(cube) => cube.source(),
+        Shader::Flat => include_str!("shaders/flat.wgsl").to_owned(),
     };
     source += include_str!("shaders/reflect.wgsl");
     if probe {
@@ -122,6 +150,14 @@ impl ReflectionPass {
             let resources = texture.bindings(&sampler);
             Self::new(gpu, &shader_source(Shader::Slabs(texture.shader()), false), &resources)
         })
+    }
+
+    /// A white mirror, to tell what a frame costs beside its reflections.
+    ///
+    /// # Errors
+    /// If the device refuses the pipeline.
+    pub fn flat(gpu: &Gpu) -> Result<Self, GpuError> {
+        gpu.checked("the white pipeline", || Self::new(gpu, &shader_source(Shader::Flat, false), &[]))
     }
 
     /// `resources` are the environment's, beside the frame's uniform at binding 0.

@@ -6,7 +6,7 @@ use lf_math::Face;
 use crate::error::GpuError;
 use crate::gpu::Gpu;
 use crate::pass::{Shader, bilinear_sampler, bind_group, buffer, clear_color, pipeline, shader_source};
-use crate::storage::SlabTexture;
+use crate::slab_texture::SlabTexture;
 use crate::target::Target;
 use crate::uniforms::ProbeUniform;
 

@@ -1,23 +1,20 @@
-//! A light field in a texture.
+//! The forms in which a device can hold a light field, and which it can.
 
-use std::borrow::Cow;
 use std::fmt;
 
-use lf_compress::bc1;
+use lf_compress::PackedLightField;
 use lf_compress::format::{SlabTiling, TexelEncoding};
-use lf_compress::{PackedLightField, rgba16f};
-use lf_math::LightFieldGeometry;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{SlabShader, buffer};
-use crate::uniforms::SlabsUniform;
-use crate::windows::WindowTable;
-
-/// More texture bytes than this are refused: some drivers abort the program instead of reporting that memory is out.
-const MAX_TEXTURE_BYTES: u64 = 4 << 30;
+use crate::layers::Layers;
 
 /// How the packed volume lies in device memory.
+///
+/// [`SlabTexture::new`](crate::SlabTexture::new) takes the first form that the device can hold: BC1 blocks as a volume, BC1 blocks as an
+/// array, decoded texels as an array. An array with fewer layers than the light field has slices gets several slices to a
+/// layer, as many as it must. Forms are passed over for missing features, for limits, and for a budget of bytes
+/// ([`DeviceOptions`](crate::DeviceOptions)); all of this is decided before the device is asked for memory. The picture is the same in each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Storage {
     /// BC1 blocks in a 3D texture, as in the paper. Needs `TEXTURE_COMPRESSION_BC_SLICED_3D`.
@@ -41,18 +38,13 @@ impl fmt::Display for Storage {
     }
 }
 
-/// Texture bytes handed to the queue before it is made to pass them on: until then it keeps a copy of each.
-const UPLOAD_BATCH: usize = 64 << 20;
-
-/// A light field on the device.
-pub struct SlabTexture {
-    view: wgpu::TextureView,
-    uniform: wgpu::Buffer,
-    /// Where the windows of cropped images lie; `None` if all images are whole.
-    windows: Option<wgpu::Buffer>,
-    storage: Storage,
-    geometry: LightFieldGeometry,
-    bytes: u64,
+/// A form that a device can hold a light field in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plan {
+    pub(crate) storage: Storage,
+    pub(crate) layers: Layers,
+    /// Of the texture, spare slots of the power-of-two volume included.
+    pub(crate) bytes: u64,
 }
 
 impl Storage {
@@ -60,12 +52,12 @@ impl Storage {
     pub const ALL: [Self; 4] = [Self::Bc1Volume, Self::Bc1Array, Self::Rgba8Array, Self::Rgba16FArray];
 
     /// Whether it keeps BC1 blocks as they are.
-    fn has_blocks(self) -> bool {
+    pub(crate) fn has_blocks(self) -> bool {
         matches!(self, Self::Bc1Volume | Self::Bc1Array)
     }
 
     /// Bytes of a texel that is not in a block.
-    fn texel_bytes(self) -> u32 {
+    pub(crate) fn texel_bytes(self) -> u32 {
         if self == Self::Rgba16FArray { 8 } else { 4 }
     }
 
@@ -79,197 +71,110 @@ impl Storage {
         }
     }
 
-    /// Why a device cannot hold a light field in this form, if so.
-    fn obstacle(self, gpu: &Gpu, field: &PackedLightField) -> Option<String> {
-        let features = gpu.device.features();
-        let limits = gpu.device.limits();
-        let [width, height, depth] = field.layout().size();
-        let (needed, edge, slices) = match self {
-            Self::Bc1Volume => {
-                let both = wgpu::Features::TEXTURE_COMPRESSION_BC | wgpu::Features::TEXTURE_COMPRESSION_BC_SLICED_3D;
-                (both, limits.max_texture_dimension_3d, limits.max_texture_dimension_3d)
-            }
-            Self::Bc1Array => {
-                let one = wgpu::Features::TEXTURE_COMPRESSION_BC;
-                (one, limits.max_texture_dimension_2d, limits.max_texture_array_layers)
-            }
-            Self::Rgba8Array | Self::Rgba16FArray => {
-                (wgpu::Features::empty(), limits.max_texture_dimension_2d, limits.max_texture_array_layers)
-            }
-        };
-        if let Some(other) = field.tilings().iter().map(SlabTiling::encoding).find(|&encoding| !self.takes(encoding)) {
-            return Some(format!("its texels are {other:?}"));
-        }
-        if !features.contains(needed) {
-            return Some(format!("the device lacks {needed:?}"));
-        }
-        if width.max(height) > edge || depth > slices {
-            return Some(format!("{width}×{height}×{depth} texels exceed the device's {edge}×{edge}×{slices}"));
-        }
-        let bytes = self.bytes(field);
-        (bytes > MAX_TEXTURE_BYTES).then(|| format!("{bytes} bytes exceed the budget of {MAX_TEXTURE_BYTES}"))
-    }
-
-    /// Bytes of the texture on the device, spare slots of the power-of-two volume included.
-    fn bytes(self, field: &PackedLightField) -> u64 {
-        let texels: u64 = field.layout().size().map(u64::from).iter().product();
+    fn features(self) -> wgpu::Features {
         match self {
-            Self::Bc1Volume | Self::Bc1Array => texels / 2,
-            Self::Rgba8Array | Self::Rgba16FArray => u64::from(self.texel_bytes()) * texels,
+            Self::Bc1Volume => {
+                wgpu::Features::TEXTURE_COMPRESSION_BC | wgpu::Features::TEXTURE_COMPRESSION_BC_SLICED_3D
+            }
+            Self::Bc1Array => wgpu::Features::TEXTURE_COMPRESSION_BC,
+            Self::Rgba8Array | Self::Rgba16FArray => wgpu::Features::empty(),
         }
     }
 
-    fn descriptor(self, [width, height, depth]: [u32; 3]) -> wgpu::TextureDescriptor<'static> {
-        let format = match self {
+    /// How a device can hold a light field in this form.
+    ///
+    /// # Errors
+    /// [`GpuError::Storage`] or [`GpuError::OverBudget`] if it cannot.
+    pub(crate) fn plan(self, gpu: &Gpu, field: &PackedLightField) -> Result<Plan, GpuError> {
+        let obstacle = |why| GpuError::Storage { storage: self, adapter: gpu.name(), why };
+        if let Some(other) = field.tilings().iter().map(SlabTiling::encoding).find(|&encoding| !self.takes(encoding)) {
+            return Err(obstacle(format!("its texels are {other:?}")));
+        }
+        let missing = self.features() - gpu.device.features();
+        if !missing.is_empty() {
+            return Err(obstacle(format!("the device lacks {missing:?}")));
+        }
+        let size = field.layout().size();
+        let layers = self.layers(&gpu.device.limits(), size).map_err(obstacle)?;
+        let bytes = self.bytes(layers.size());
+        gpu.affords(format!("the {self} of this light field"), bytes)?;
+        Ok(Plan { storage: self, layers, bytes })
+    }
+
+    /// How slices lie in a texture that keeps a device's limits, or why they cannot.
+    fn layers(self, limits: &wgpu::Limits, size: [u32; 3]) -> Result<Layers, String> {
+        let [width, height, slices] = size;
+        let (edge, most) = match self {
+            Self::Bc1Volume => (limits.max_texture_dimension_3d, limits.max_texture_dimension_3d),
+            _ => (limits.max_texture_dimension_2d, limits.max_texture_array_layers),
+        };
+        let exceeded = format!("{slices} slices of {width}×{height} texels exceed the device's {edge}×{edge}×{most}");
+        let layers = if self == Self::Bc1Volume {
+            Some(Layers::plain(size)).filter(|_| width.max(height) <= edge && slices <= most)
+        } else {
+            Layers::within(size, edge, most)
+        };
+        layers.ok_or(if width.max(height) > edge {
+            format!("{exceeded}; capture images of at most {edge} texels, or crop them")
+        } else {
+            format!("{exceeded}; crop the light field, or capture fewer cameras or texels")
+        })
+    }
+
+    fn bytes(self, size: [u32; 3]) -> u64 {
+        let texels: u64 = size.map(u64::from).iter().product();
+        if self.has_blocks() { texels / 2 } else { u64::from(self.texel_bytes()) * texels }
+    }
+
+    pub(crate) fn format(self) -> wgpu::TextureFormat {
+        match self {
             Self::Bc1Volume | Self::Bc1Array => wgpu::TextureFormat::Bc1RgbaUnorm,
             Self::Rgba8Array => wgpu::TextureFormat::Rgba8Unorm,
             Self::Rgba16FArray => wgpu::TextureFormat::Rgba16Float,
-        };
+        }
+    }
+
+    /// The texture's dimension, and the one under which the shader sees it: a single layer must be asked for as an array, too.
+    pub(crate) fn dimensions(self) -> (wgpu::TextureDimension, wgpu::TextureViewDimension) {
+        match self {
+            Self::Bc1Volume => (wgpu::TextureDimension::D3, wgpu::TextureViewDimension::D3),
+            _ => (wgpu::TextureDimension::D2, wgpu::TextureViewDimension::D2Array),
+        }
+    }
+}
+
+impl Plan {
+    /// The first form that a device can hold.
+    ///
+    /// # Errors
+    /// If there is none: the budget if that is all that is in the way of a form, else what is in the way of the form that needs least.
+    pub(crate) fn first(gpu: &Gpu, field: &PackedLightField) -> Result<Self, GpuError> {
+        let encoding = field.tilings()[0].encoding();
+        let mut found = None;
+        for storage in Storage::ALL.into_iter().filter(|storage| storage.takes(encoding)) {
+            match storage.plan(gpu, field) {
+                Ok(plan) => return Ok(plan),
+                Err(error) if !matches!(found, Some(GpuError::OverBudget { .. })) => found = Some(error),
+                Err(_) => {}
+            }
+        }
+        Err(found.unwrap_or_else(|| GpuError::Refused {
+            what: "the light field",
+            why: format!("no texture holds {encoding:?} texels"),
+        }))
+    }
+
+    pub(crate) fn descriptor(&self) -> wgpu::TextureDescriptor<'static> {
+        let [width, height, depth] = self.layers.size();
         wgpu::TextureDescriptor {
             label: Some("slabs"),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: depth },
             mip_level_count: 1,
             sample_count: 1,
-            dimension: if self == Self::Bc1Volume { wgpu::TextureDimension::D3 } else { wgpu::TextureDimension::D2 },
-            format,
+            dimension: self.storage.dimensions().0,
+            format: self.storage.format(),
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         }
     }
-
-    /// The dimension under which the shader sees the texture. A single layer must be asked for as an array, too.
-    fn view_dimension(self) -> wgpu::TextureViewDimension {
-        match self {
-            Self::Bc1Volume => wgpu::TextureViewDimension::D3,
-            Self::Bc1Array | Self::Rgba8Array | Self::Rgba16FArray => wgpu::TextureViewDimension::D2Array,
-        }
-    }
-}
-
-impl SlabTexture {
-    /// Uploads a light field in the first form that the device can hold.
-    ///
-    /// # Errors
-    /// If it can hold none; the reason given is that of the form that needs least.
-    pub fn new(gpu: &Gpu, field: &PackedLightField) -> Result<Self, GpuError> {
-        let possible = Storage::ALL.into_iter().find(|storage| storage.obstacle(gpu, field).is_none());
-        let linear = field.tilings().iter().any(|tiling| tiling.encoding() == TexelEncoding::Rgb16F);
-        let least = if linear { Storage::Rgba16FArray } else { Storage::Rgba8Array };
-        Self::with_storage(gpu, field, possible.unwrap_or(least))
-    }
-
-    /// Uploads a light field in a given form, slice by slice. BC1 blocks go up as they are.
-    ///
-    /// # Errors
-    /// If the device cannot hold it in this form.
-    pub fn with_storage(gpu: &Gpu, field: &PackedLightField, storage: Storage) -> Result<Self, GpuError> {
-        if let Some(why) = storage.obstacle(gpu, field) {
-            return Err(GpuError::Storage { storage, adapter: gpu.name(), why });
-        }
-        let descriptor = storage.descriptor(field.layout().size());
-        let texture = gpu.checked("the slab texture", || gpu.device.create_texture(&descriptor))?;
-        let mut waiting = 0;
-        for (slab, layout) in field.layout().slabs().iter().enumerate() {
-            let tiling = layout.tiling();
-            for (number, tile) in tiling.stored_tiles().zip(field.tiles(slab)) {
-                let Some(slice) = layout.slice(number) else { continue };
-                let size = tiling.tile_size(number);
-                let bytes = texture_bytes(storage, tiling.encoding(), size, tile)?;
-                gpu.checked("a slice of the slab texture", || upload(gpu, &texture, storage, slice, size, &bytes))?;
-                waiting += bytes.len();
-                if waiting >= UPLOAD_BATCH {
-                    gpu.queue.submit([]);
-                    waiting = 0;
-                }
-            }
-        }
-        let dimension = Some(storage.view_dimension());
-        let (view, uniform, windows) = gpu.checked("the slab texture's view", || {
-            let table = WindowTable::new(field.layout());
-            let slabs = SlabsUniform::new(field, table.as_ref());
-            let uniform = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
-            let rows = |table: WindowTable| {
-                buffer(gpu, "windows", bytemuck::cast_slice(table.rows()), wgpu::BufferUsages::STORAGE)
-            };
-            let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() });
-            (view, uniform, table.map(rows))
-        })?;
-        let (geometry, bytes) = (field.geometry().clone(), storage.bytes(field));
-        Ok(Self { view, uniform, windows, storage, geometry, bytes })
-    }
-
-    /// The resources that slabs.wgsl asks for.
-    pub(crate) fn bindings<'a>(&'a self, sampler: &'a wgpu::Sampler) -> Vec<(u32, wgpu::BindingResource<'a>)> {
-        let mut all = vec![
-            (1, self.uniform.as_entire_binding()),
-            (2, wgpu::BindingResource::Sampler(sampler)),
-            (3, wgpu::BindingResource::TextureView(&self.view)),
-        ];
-        all.extend(self.windows.as_ref().map(|windows| (5, windows.as_entire_binding())));
-        all
-    }
-
-    /// Which variant of the shader it needs.
-    pub(crate) fn shader(&self) -> SlabShader {
-        SlabShader { storage: self.storage, cropped: self.windows.is_some() }
-    }
-
-    /// The cell and the slabs.
-    #[must_use]
-    pub fn geometry(&self) -> &LightFieldGeometry {
-        &self.geometry
-    }
-
-    /// The form in which it lies on the device.
-    #[must_use]
-    pub fn storage(&self) -> Storage {
-        self.storage
-    }
-
-    /// Bytes of the texture on the device.
-    #[must_use]
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-}
-
-/// A tile's bytes as the texture wants them.
-fn texture_bytes(
-    storage: Storage,
-    encoding: TexelEncoding,
-    [width, height]: [u32; 2],
-    tile: &[u8],
-) -> Result<Cow<'_, [u8]>, GpuError> {
-    match encoding {
-        TexelEncoding::Bc1 if storage == Storage::Rgba8Array => {
-            let texels = bc1::decode_image(width, height, tile).map_err(lf_compress::PackError::from)?;
-            Ok(bytemuck::cast_slice(&texels).to_vec().into())
-        }
-        // No device samples three half floats.
-        TexelEncoding::Rgb16F => Ok(rgba16f(tile).into()),
-        _ => Ok(tile.into()),
-    }
-}
-
-/// Writes one slice. A slice may be larger than the tile; the rest stays zero and is never sampled.
-fn upload(gpu: &Gpu, texture: &wgpu::Texture, storage: Storage, slice: u32, size: [u32; 2], bytes: &[u8]) {
-    let [width, height] = size;
-    // A row of BC1 blocks is 8 bytes for every 4 texels.
-    let (bytes_per_row, rows_per_image) =
-        if storage.has_blocks() { (2 * width, height / 4) } else { (storage.texel_bytes() * width, height) };
-    gpu.queue.write_texture(
-        wgpu::TexelCopyTextureInfo {
-            texture,
-            mip_level: 0,
-            origin: wgpu::Origin3d { x: 0, y: 0, z: slice },
-            aspect: wgpu::TextureAspect::All,
-        },
-        bytes,
-        wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(bytes_per_row),
-            rows_per_image: Some(rows_per_image),
-        },
-        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-    );
 }

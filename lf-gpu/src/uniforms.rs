@@ -6,6 +6,7 @@ use lf_compress::PackedLightField;
 use lf_compress::volume::SlabLayout;
 use lf_math::{Pinhole, Slab};
 
+use crate::layers::Layers;
 use crate::windows::{NO_MASK, TablePlace, WindowTable};
 
 /// `Frame` of reflect.wgsl.
@@ -30,11 +31,11 @@ pub(crate) struct SlabUniform {
     pub(crate) disparity: Vec2,
     pub(crate) plane: f32,
     pub(crate) present: u32,
-    pub(crate) pitch: [u32; 2],
-    pub(crate) cameras_per_slice: [u32; 2],
-    pub(crate) first_slice: u32,
-    pub(crate) groups_s: u32,
-    pub(crate) padding: [u32; 2],
+    pub(crate) pitch: Vec2,
+    pub(crate) cameras_per_slice: Vec2,
+    pub(crate) slices_per_group: Vec2,
+    pub(crate) first_slice: f32,
+    pub(crate) padding: f32,
     pub(crate) table: [u32; 4],
 }
 
@@ -44,6 +45,8 @@ pub(crate) struct SlabUniform {
 pub(crate) struct SlabsUniform {
     pub(crate) texel_scale: Vec3,
     pub(crate) padding: f32,
+    pub(crate) grid: [u32; 2],
+    pub(crate) more_padding: [u32; 2],
     pub(crate) faces: [SlabUniform; 6],
 }
 
@@ -64,9 +67,10 @@ impl FrameUniform {
 }
 
 impl SlabsUniform {
-    pub(crate) fn new(field: &PackedLightField, table: Option<&WindowTable>) -> Self {
+    pub(crate) fn new(field: &PackedLightField, layers: &Layers, table: Option<&WindowTable>) -> Self {
         let mut uniform = Self::zeroed();
-        uniform.texel_scale = Vec3::from(field.layout().size().map(|n| 1.0 / n as f32));
+        uniform.texel_scale = Vec3::from(layers.size().map(|n| 1.0 / n as f32));
+        uniform.grid = layers.grid();
         for (number, (slab, layout)) in field.geometry().slabs().iter().zip(field.layout().slabs()).enumerate() {
             let place = table.map_or(TablePlace { columns: 0, rows: 0, mask: NO_MASK }, |table| table.place(number));
             uniform.faces[usize::from(slab.face().index())] = SlabUniform::new(slab, layout, place);
@@ -88,11 +92,12 @@ impl SlabUniform {
             disparity: slab.disparity(),
             plane: slab.plane(),
             present: 1,
-            pitch: slab.resolution().map(|texels| texels.next_multiple_of(4)),
-            cameras_per_slice: layout.tiling().cameras_per_tile(),
-            first_slice: layout.first_slice(),
-            groups_s: layout.groups()[0],
-            padding: [0; 2],
+            // Whole numbers far below 2²⁴, which floats hold exactly; vector units have no integer division.
+            pitch: slab.resolution().map(|texels| texels.next_multiple_of(4) as f32).into(),
+            cameras_per_slice: layout.tiling().cameras_per_tile().map(|cameras| cameras as f32).into(),
+            slices_per_group: Vec2::new(1.0, layout.groups()[0] as f32),
+            first_slice: layout.first_slice() as f32,
+            padding: 0.0,
             table: [place.columns, place.rows, place.mask, 0],
         }
     }
@@ -103,8 +108,8 @@ mod tests {
     use super::*;
     use std::mem::{offset_of, size_of};
 
-    use crate::cubes::{CubeShader, CubeUniform};
-    use crate::pass::{Shader, SlabShader, shader_source};
+    use crate::cubes::{CubeShader, CubeUniform, Depths};
+    use crate::pass::{Shader, SlabShader, Windows, shader_source};
     use crate::storage::Storage;
 
     /// Offsets of a WGSL struct's members and its size, as naga lays it out.
@@ -121,13 +126,17 @@ mod tests {
     #[test]
     fn every_shader_is_valid() {
         use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+        /// `unpack2x16float`, which only old OpenGL lacks.
+        const HALF_FLOATS: Capabilities = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
         let slabs = Storage::ALL
             .into_iter()
-            .flat_map(|storage| [false, true].map(|cropped| Shader::Slabs(SlabShader { storage, cropped })));
-        for shader in slabs.chain(CubeShader::ALL.map(Shader::Cube)) {
+            .flat_map(|storage| [false, true].map(|shared| (storage, shared)))
+            .flat_map(|(storage, shared)| Windows::ALL.map(|windows| SlabShader { storage, shared, windows }))
+            .map(Shader::Slabs);
+        for shader in slabs.chain(CubeShader::ALL.map(Shader::Cube)).chain([Shader::Flat]) {
             for probe in [false, matches!(shader, Shader::Slabs(_))] {
                 let module = parsed(&shader_source(shader, probe));
-                Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).expect("valid");
+                Validator::new(ValidationFlags::all(), HALF_FLOATS).validate(&module).expect("valid");
             }
         }
     }
@@ -141,7 +150,7 @@ mod tests {
 
     #[test]
     fn rust_and_wgsl_agree_on_every_offset() {
-        let slabs = SlabShader { storage: Storage::Bc1Volume, cropped: true };
+        let slabs = SlabShader { storage: Storage::Bc1Volume, shared: false, windows: Windows::Masked };
         let module = parsed(&shader_source(Shader::Slabs(slabs), true));
         same_layout!(&module, "Frame", FrameUniform, clip_from_cell, eye, padding);
         same_layout!(
@@ -159,14 +168,28 @@ mod tests {
             present,
             pitch,
             cameras_per_slice,
+            slices_per_group,
             first_slice,
-            groups_s,
             padding,
             table
         );
-        same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, faces);
+        same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, grid, more_padding, faces);
         same_layout!(&module, "Probe", ProbeUniform, uv, camera, face, padding);
-        let module = parsed(&shader_source(Shader::Cube(CubeShader::March), false));
-        same_layout!(&module, "Cube", CubeUniform, center, radius, low, near, high, far, steps, halvings, padding);
+        let module = parsed(&shader_source(Shader::Cube(CubeShader::March(Depths::Texture)), false));
+        same_layout!(
+            &module,
+            "Cube",
+            CubeUniform,
+            center,
+            radius,
+            low,
+            near,
+            high,
+            far,
+            steps,
+            halvings,
+            depth_size,
+            padding
+        );
     }
 }

@@ -45,6 +45,11 @@ impl WindowTable {
         self.places[slab]
     }
 
+    /// Whether single cameras are left out.
+    pub(crate) fn is_masked(&self) -> bool {
+        self.places.iter().any(|place| place.mask != NO_MASK)
+    }
+
     fn push(&mut self, slab: &SlabLayout) {
         let next = |rows: &Vec<[i32; 4]>| rows.len() as u32;
         let columns = next(&self.rows);

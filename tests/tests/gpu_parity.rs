@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 use half::f16;
-use lf_compress::PackedLightField;
-use lf_gpu::{Gpu, MirrorMesh, Proxy, ReflectionPass, SlabTexture, Storage, Target};
+use lf_compress::bc1::Quality;
+use lf_compress::{PackedCube, PackedLightField};
+use lf_gpu::{CubePicture, DeviceOptions, Gpu, MirrorMesh, Proxy, ReflectionPass, SlabTexture, Storage, Target};
 use lf_ibr::{BoxCube, CubeField, DistanceField, Environment, GBuffer, SlabField, SphereCube, Texel, reflect_frame};
 use lf_math::{Coverage, DistanceCube, Image, Pinhole, Search, Slab, SlabTexels, TriangleMesh, linear_from_srgb};
 use lf_scene::{capture_cube, capture_distance_cube, museum, reflectors};
@@ -182,5 +183,40 @@ fn distance_cubes_agree_within_two_steps_on_999_of_1000_pixels() {
     ] {
         let pass = ReflectionPass::distance_cube(&gpu, &cube, search).expect("a pass");
         compare(&gpu, what, &pass, &DistanceField::new(cube.clone(), search), 0.99);
+    }
+}
+
+/// BC1 colours and blocks of depths on the device, against the CPU's decoded ones.
+#[test]
+fn packed_cubes_agree_within_two_steps_on_999_of_1000_pixels() {
+    let gpu = gpu();
+    let packed = PackedCube::encode(&distance_cube(), Quality::Standard).expect("encodes");
+    let cube = packed.decode().expect("decodes");
+    let (map, center) = (CubeField::new(cube.radiance()), cube.position());
+    assert_eq!(CubePicture::from(&packed).bytes(&gpu), 6 * 128 * 128 / 2);
+    let plain = ReflectionPass::environment(&gpu, &packed).expect("a pass");
+    compare(&gpu, "environment map, BC1", &plain, &map, 0.998);
+    let sphere = ReflectionPass::proxy(&gpu, &packed, center, Proxy::Sphere(3.0)).expect("a pass");
+    compare(&gpu, "sphere-projected map, BC1", &sphere, &SphereCube::new(map, center, 3.0), 0.998);
+    for search in [Search::FixedPoint(4), Search::March { steps: 48, halvings: 6 }] {
+        let pass = ReflectionPass::packed_distance_cube(&gpu, &packed, search).expect("a pass");
+        compare(&gpu, "distance cube in blocks", &pass, &DistanceField::new(cube.clone(), search), 0.99);
+    }
+}
+
+/// Without BC1, or with faces that are no whole blocks, the texels are decoded first.
+#[test]
+fn packed_cubes_that_cannot_stay_blocks_are_decoded() {
+    let plain = Gpu::with_options(&DeviceOptions { blocks: false, ..DeviceOptions::default() }).expect("a device");
+    for (gpu, size) in [(plain, 128), (gpu(), 126)] {
+        let cube = capture_distance_cube(&museum(), &museum::cell(), Vec3::ZERO, [size, 62], 1).expect("a cube");
+        let packed = PackedCube::encode(&cube, Quality::Standard).expect("encodes");
+        let cube = packed.decode().expect("decodes");
+        assert_eq!(CubePicture::from(&packed).bytes(&gpu), 4 * 6 * u64::from(size).pow(2));
+        let pass = ReflectionPass::environment(&gpu, &packed).expect("a pass");
+        compare(&gpu, "environment map, decoded", &pass, &CubeField::new(cube.radiance()), 0.998);
+        let search = Search::FixedPoint(4);
+        let pass = ReflectionPass::packed_distance_cube(&gpu, &packed, search).expect("a pass");
+        compare(&gpu, "distance cube, odd sizes", &pass, &DistanceField::new(cube, search), 0.99);
     }
 }

@@ -13,7 +13,9 @@ struct Cube {
     far: f32,
     steps: u32,
     halvings: u32,
-    padding: vec2u,
+    // Texels along the edge of a face of depths.
+    depth_size: u32,
+    padding: u32,
 }
 
 @group(0) @binding(1) var cube: texture_cube<f32>;

@@ -1,7 +1,5 @@
-// Depths of a distance cube. CPU twin: lf-math/src/distance_cube.rs.
-
-@group(0) @binding(4) var inverse_depths: texture_cube<f32>;
-@group(0) @binding(5) var nearest: sampler;
+// Depths of a distance cube. CPU twin: lf-math/src/distance_cube.rs. `stored_inverse` comes from depth_texture.wgsl or
+// depth_blocks.wgsl.
 
 fn depth_along_axis(away: vec3f) -> f32 {
     let size = abs(away);
@@ -10,7 +8,7 @@ fn depth_along_axis(away: vec3f) -> f32 {
 
 // How deep a place is, as a multiple of what the nearest texel shows.
 fn relative_depth(away: vec3f) -> f32 {
-    return depth_along_axis(away) * textureSampleLevel(inverse_depths, nearest, away, 0.0).r;
+    return depth_along_axis(away) * stored_inverse(away);
 }
 
 // The same by the nearest thing that any of the four texels around shows. They are sampled half a texel away, within the face: a
@@ -18,7 +16,7 @@ fn relative_depth(away: vec3f) -> f32 {
 fn largest_relative_depth(away: vec3f) -> f32 {
     let depth = depth_along_axis(away);
     let on_face = away / depth;
-    let half_texel = 1.0 / f32(textureDimensions(inverse_depths).x);
+    let half_texel = 1.0 / f32(place.depth_size);
     // The tangents: across and along; of two equal axes the first is the face's.
     let size = abs(away);
     let is_x = size.x >= size.y && size.x >= size.z;
@@ -32,7 +30,7 @@ fn largest_relative_depth(away: vec3f) -> f32 {
 
 // The inverse depth at an offset from a place of a cube of half size 1, kept within the outermost texels' middles.
 fn inverse(on_face: vec3f, offset: vec3f) -> f32 {
-    let last = vec3f(1.0 - 1.0 / f32(textureDimensions(inverse_depths).x));
+    let last = vec3f(1.0 - 1.0 / f32(place.depth_size));
     let moved = clamp(on_face + offset, -last, last);
-    return textureSampleLevel(inverse_depths, nearest, select(moved, on_face, offset == vec3f(0.0)), 0.0).r;
+    return stored_inverse(select(moved, on_face, offset == vec3f(0.0)));
 }

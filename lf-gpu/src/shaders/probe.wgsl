@@ -24,6 +24,9 @@ fn probe_fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
         return vec4f(0.0);
     }
     let probe = probes[index];
-    let texel = fetch_camera(probe.face, probe.camera, probe.uv);
+    let camera = vec2f(probe.camera);
+    let columns = lines(probe.face, 0u, camera.xx, probe.uv.xx);
+    let rows = lines(probe.face, 1u, camera.yy, probe.uv.yy);
+    let texel = tapped(probe.face, camera, columns, rows, 0u, 0u);
     return vec4f(displayed(texel.rgb), texel.a);
 }

@@ -1,6 +1,6 @@
 // Light field slabs: Figs. 6 and 8 of Yu, Yang & McMillan in one pass. CPU twins: lf-math/src/slab.rs, lf-ibr/src/slabs.rs.
-// `fetch` comes from volume.wgsl or array.wgsl, `fetch_camera` and `make_up` from whole.wgsl or cropped.wgsl, `displayed` from
-// srgb.wgsl or linear.wgsl.
+// `fetch` comes from volume.wgsl, array.wgsl or shared.wgsl, `lines`, `is_kept` and `make_up` from whole.wgsl or cropped.wgsl with
+// unmasked.wgsl or masked.wgsl, `displayed` from srgb.wgsl or linear.wgsl.
 
 // One slab; pairs are along (s, t) or (u, v). Mirrors `SlabUniform` in uniforms.rs.
 struct Slab {
@@ -18,20 +18,23 @@ struct Slab {
     // 1, or 0 if the light field has no slab for this face.
     present: u32,
     // Texels between neighbouring images in a slice.
-    pitch: vec2u,
-    cameras_per_slice: vec2u,
-    first_slice: u32,
-    // Slices per row of camera groups.
-    groups_s: u32,
-    padding: vec2u,
+    pitch: vec2f,
+    cameras_per_slice: vec2f,
+    // Slices from one group of cameras to the next.
+    slices_per_group: vec2f,
+    first_slice: f32,
+    padding: f32,
     // For cropped slabs, rows of the window table: where those of the camera columns, of the camera rows and of the mask begin.
     table: vec4u,
 }
 
 struct Slabs {
-    // One over the volume's size in texels.
+    // One over the texture's size in texels.
     texel_scale: vec3f,
     padding: f32,
+    // Slices along the rows and columns of a layer.
+    grid: vec2u,
+    more_padding: vec2u,
     // By face: +X -X +Y -Y +Z -Z.
     faces: array<Slab, 6>,
 }
@@ -39,46 +42,58 @@ struct Slabs {
 @group(0) @binding(1) var<uniform> slabs: Slabs;
 @group(0) @binding(2) var bilinear: sampler;
 
-// The face of the component of largest magnitude; on a tie the first of x, y, z.
-fn dominant_axis(direction: vec3f) -> u32 {
-    let a = abs(direction);
-    if a.x >= a.y && a.x >= a.z {
-        return 0u;
-    }
-    return select(2u, 1u, a.y >= a.z);
-}
-
-// The components along s and t, in cyclic order after the axis.
-fn tangential(v: vec3f, axis: u32) -> vec2f {
-    return vec2f(v[(axis + 1u) % 3u], v[(axis + 2u) % 3u]);
+// Two neighbouring columns (axis 0) or rows (axis 1) of cameras and a tap in each. The four cameras around a ray are their products, and
+// so are the places of their taps.
+struct Lines {
+    // Of the taps in their slices, index units.
+    places: vec2f,
+    // What the line adds to the number of the slice.
+    slices: vec2f,
+    // 0 if no camera of the line is there, else 1; then the line's weight.
+    weights: vec2f,
 }
 
 fn look_up(origin: vec3f, direction: vec3f) -> vec3f {
-    let axis = dominant_axis(direction);
-    let along = direction[axis];
-    let face = 2u * axis + select(0u, 1u, along < 0.0);
+    // The component of largest magnitude, on a tie the first; s and t follow in cyclic order.
+    let size = abs(direction);
+    let is_x = size.x >= size.y && size.x >= size.z;
+    let is_y = !is_x && size.y >= size.z;
+    let d = select(select(direction.zxy, direction.yzx, is_y), direction, is_x);
+    let o = select(select(origin.zxy, origin.yzx, is_y), origin, is_x);
+    let face = select(select(4u, 2u, is_y), 0u, is_x) + select(0u, 1u, d.x < 0.0);
     let slab = slabs.faces[face];
-    if slab.present == 0u || along == 0.0 {
+    if slab.present == 0u || d.x == 0.0 {
         return vec3f(0.0);
     }
     // Eqs. 3 and 4: where the ray crosses the camera plane, and its slope.
-    let slope = tangential(direction, axis) / abs(along);
-    let run = sign(along) * (slab.plane - origin[axis]);
-    let position = tangential(origin, axis) + run * slope;
+    let slope = d.yz / abs(d.x);
+    let position = o.yz + sign(d.x) * (slab.plane - o.x) * slope;
     // Eq. 1.
     let st = clamp((position - slab.st_first) / slab.st_step, vec2f(0.0), slab.st_last);
     let uv = (slope - slab.uv_first) / slab.uv_step;
     // Eq. 5: the four cameras around it; the last is reached with weight 1 from the last but one.
-    let base = min(floor(st), max(slab.st_last - 1.0, vec2f(0.0)));
-    let fraction = st - base;
-    var sum = vec4f(0.0);
-    for (var i = 0u; i < 4u; i++) {
-        let corner = vec2f(f32(i & 1u), f32(i >> 1u));
-        let shares = (1.0 - corner) + (2.0 * corner - 1.0) * fraction;
-        let camera = min(base + corner, slab.st_last);
-        // Eq. 6, and never past the image's own texels.
-        let tap = clamp(uv + slab.disparity * (st - camera), vec2f(0.0), slab.uv_last);
-        sum += shares.x * shares.y * fetch_camera(face, vec2u(camera), tap);
-    }
+    let first = min(floor(st), max(slab.st_last - 1.0, vec2f(0.0)));
+    let second = min(first + 1.0, slab.st_last);
+    // Eq. 6, and never past the image's own texels.
+    let first_tap = clamp(uv + slab.disparity * (st - first), vec2f(0.0), slab.uv_last);
+    let second_tap = clamp(uv + slab.disparity * (st - second), vec2f(0.0), slab.uv_last);
+    var columns = lines(face, 0u, vec2f(first.x, second.x), vec2f(first_tap.x, second_tap.x));
+    var rows = lines(face, 1u, vec2f(first.y, second.y), vec2f(first_tap.y, second_tap.y));
+    let fraction = st - first;
+    columns.weights *= vec2f(1.0 - fraction.x, fraction.x);
+    rows.weights *= vec2f(1.0 - fraction.y, fraction.y);
+    let sum = tapped(face, first, columns, rows, 0u, 0u)
+        + tapped(face, vec2f(second.x, first.y), columns, rows, 1u, 0u)
+        + tapped(face, vec2f(first.x, second.y), columns, rows, 0u, 1u)
+        + tapped(face, second, columns, rows, 1u, 1u);
     return displayed(make_up(sum));
+}
+
+// The weighted tap of one camera and its weight; 0 if it is not there.
+fn tapped(face: u32, camera: vec2f, columns: Lines, rows: Lines, column: u32, row: u32) -> vec4f {
+    let weight = columns.weights[column] * rows.weights[row];
+    let place = vec2f(columns.places[column], rows.places[row]);
+    let slice = slabs.faces[face].first_slice + columns.slices[column] + rows.slices[row];
+    let kept = select(0.0, weight, is_kept(face, camera));
+    return kept * vec4f(fetch((place + 0.5) * slabs.texel_scale.xy, u32(max(slice, 0.0))), 1.0);
 }
