@@ -7,7 +7,7 @@ use lf_compress::PackOptions;
 use lf_compress::volume::cameras_per_tile;
 use lf_format::{Contents, FormatError, Metadata, SlabTiling, TexelEncoding, Writer};
 use lf_math::{Coverage, LightFieldGeometry, NeededTexels};
-use lf_scene::{Tracer, focus};
+use lf_scene::{FocusRule, Tracer, focus_by};
 
 use crate::error::CaptureError;
 use crate::identity;
@@ -54,7 +54,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Surveys a scene: finds the focal planes ([`focus`]), and with them what is needed of each image.
+    /// Surveys a scene: finds the focal planes ([`focus`](lf_scene::focus)), and with them what is needed of each image.
     ///
     /// # Errors
     /// If the encoding is not for 8-bit texels, or a slab or its tiles are too large.
@@ -64,7 +64,21 @@ impl Plan {
         options: Options,
         metadata: Metadata,
     ) -> Result<Self, CaptureError> {
-        let geometry = focus(tracer, geometry)?;
+        Self::survey_by(tracer, geometry, FocusRule::default(), options, metadata)
+    }
+
+    /// As [`Self::survey`], with focal planes by a rule of the caller's choice.
+    ///
+    /// # Errors
+    /// As there; also if a focal plane is not in front of the camera planes.
+    pub fn survey_by(
+        tracer: &Tracer,
+        geometry: &LightFieldGeometry,
+        rule: FocusRule,
+        options: Options,
+        metadata: Metadata,
+    ) -> Result<Self, CaptureError> {
+        let geometry = focus_by(tracer, geometry, rule)?;
         let scene = identity::of_scene(tracer, &geometry);
         Self::new(geometry, options, metadata, scene)
     }

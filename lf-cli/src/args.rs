@@ -16,6 +16,7 @@ use crate::capture_args::{CaptureArgs, CubemapArgs, MergeArgs};
 use crate::exchange_args::{ExportArgs, ImportArgs};
 use crate::methods_args::MethodsArgs;
 use crate::plan_args::PlanArgs;
+use crate::refocus_args::{HoldoutArgs, RefocusArgs};
 use crate::scene_args::{LightArgs, SceneArgs, ViewArgs};
 
 /// Reflections with parallax from light field slabs: capture, compress, inspect and render them.
@@ -50,6 +51,10 @@ pub(crate) enum Command {
     Validate(ValidateArgs),
     /// Leave out what no ray through the cell asks for, without encoding anything again
     Crop(CropArgs),
+    /// Find the focal planes of a light field from its images alone, and set them; the images stay as they are
+    Refocus(RefocusArgs),
+    /// Leave cameras out, make their pictures from the others, and measure the error
+    Holdout(HoldoutArgs),
     /// Write a light field in another program's format
     Export(ExportArgs),
     /// Make a .lfslab file of pictures from a camera grid, or of those of a plan

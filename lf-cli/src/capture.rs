@@ -12,6 +12,7 @@ use anyhow::{Context, Result, bail};
 use lf_capture::{CaptureError, Journal, Options, Outcome, Plan, Shard, Totals, capture, write_files};
 use lf_format::Metadata;
 use lf_math::LightFieldGeometry;
+use lf_scene::FocusRule;
 
 use crate::args::Sampling;
 use crate::capture_args::{CaptureArgs, MergeArgs};
@@ -51,7 +52,7 @@ pub(crate) fn run(args: &CaptureArgs) -> Result<()> {
     }
     let stop = stop_on_signal()?;
     let source = Source::load(&args.scene)?;
-    let plan = survey(&source, &sampling(args), options(args))?;
+    let plan = survey(&source, &sampling(args), args.focus.0, options(args))?;
     if args.restart {
         // Not before the new capture is sure to begin.
         Journal::discard(&path)?;
@@ -89,7 +90,7 @@ pub(crate) fn run_merge(args: &MergeArgs) -> Result<()> {
 /// which may be hours of work.
 pub(crate) fn capture_to(source: &Source, sampling: &Sampling, options: Options, out: &Path) -> Result<Captured> {
     let start = Instant::now();
-    let plan = survey(source, sampling, options)?;
+    let plan = survey(source, sampling, FocusRule::default(), options)?;
     let path = with_suffix(out, ".demo.part");
     Journal::discard(&path)?;
     let mut journal = begin(&path, &plan, Shard::WHOLE)?;
@@ -161,11 +162,11 @@ fn stop_on_signal() -> Result<Arc<AtomicBool>> {
 }
 
 /// Finds the focal planes and what is needed, and says what will be done.
-fn survey(source: &Source, sampling: &Sampling, options: Options) -> Result<Plan> {
+fn survey(source: &Source, sampling: &Sampling, rule: FocusRule, options: Options) -> Result<Plan> {
     let &Sampling { cameras: [s, t], resolution: [u, v], placement, grid } = sampling;
     let geometry = LightFieldGeometry::around_with(source.cell, placement, sampling.cameras, sampling.resolution)?;
     let start = Instant::now();
-    let plan = Plan::survey(&source.tracer, &geometry, options, metadata(source)?)?;
+    let plan = Plan::survey_by(&source.tracer, &geometry, rule, options, metadata(source)?)?;
     let stored: u64 = plan.tilings().iter().map(|tiling| tiling.coverage().texels()).sum();
     eprintln!(
         "capture  6 slabs of {s}×{t} cameras × {u}×{v} texels, {grid}×{grid} rays each; surveyed in {:.1} s, {:.1} % of \

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use clap::Args;
 use lf_capture::Shard;
 use lf_math::PlanePlacement;
+use lf_scene::FocusRule;
 
 use crate::args::{EncodingArgs, Preset, numbers};
 use crate::scene_args::SceneArgs;
@@ -34,6 +35,11 @@ pub(crate) struct CaptureArgs {
     /// Rays per texel and axis, instead of the preset's: N×N rays a texel
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) supersample: Option<u32>,
+    /// Where the focal planes stand: at a middle of the inverse depths that a survey finds: `median`, the default, as it does best in the museum (docs/light-fields.md); `least-squares`, the mean;
+    /// `minimax`, between the nearest and the farthest (the harmonic mean of both depths); or `none` (at infinity), or metres from the
+    /// camera planes
+    #[arg(long, value_name = "RULE|METRES", default_value = "median")]
+    pub(crate) focus: FocusArg,
     #[command(flatten)]
     pub(crate) encoding: EncodingArgs,
     /// Trace and store the texels that no ray through the cell asks for, too
@@ -93,12 +99,16 @@ pub(crate) struct CubemapArgs {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PlanesArg(pub(crate) PlanePlacement);
 
+/// Where focal planes stand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FocusArg(pub(crate) FocusRule);
+
 /// A point in world space, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PointArg(pub(crate) [f64; 3]);
 
 /// Two counts from 1 to `MAX`: one number for both, or two with an x between.
-fn counts<const MAX: u32>(text: &str) -> Result<[u32; 2], String> {
+pub(crate) fn counts<const MAX: u32>(text: &str) -> Result<[u32; 2], String> {
     let (first, second) = text.split_once(['x', '×']).unwrap_or((text, text));
     let count = |text: &str| text.trim().parse().ok().filter(|count| (1..=MAX).contains(count));
     let both = count(first).zip(count(second)).map(|(first, second)| [first, second]);
@@ -121,6 +131,24 @@ impl FromStr for PlanesArg {
     }
 }
 
+impl FromStr for FocusArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let rule = match text {
+            "median" => FocusRule::Median,
+            "least-squares" => FocusRule::LeastSquares,
+            "minimax" => FocusRule::Minimax,
+            "none" => FocusRule::Infinity,
+            metres => match numbers(metres) {
+                Ok([depth]) if depth > 0.0 => FocusRule::At(depth as f32),
+                _ => return Err("expected median, least-squares, minimax, none or a distance in metres".to_owned()),
+            },
+        };
+        Ok(Self(rule))
+    }
+}
+
 impl FromStr for PointArg {
     type Err = String;
 
@@ -139,6 +167,15 @@ mod tests {
         assert_eq!(counts::<256>("32x16"), Ok([32, 16]));
         for bad in ["", "0", "257", "1x", "x", "1x0", "1x2x3", "-1"] {
             assert!(counts::<256>(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn focal_planes_are_named_or_measured() {
+        assert_eq!("minimax".parse(), Ok(FocusArg(FocusRule::Minimax)));
+        assert_eq!("2.5".parse(), Ok(FocusArg(FocusRule::At(2.5))));
+        for bad in ["", "0", "-1", "auto", "1,2", "nan"] {
+            assert!(bad.parse::<FocusArg>().is_err(), "{bad}");
         }
     }
 

@@ -12,7 +12,7 @@ use lf_exchange::{
     VolumeFormat, dds, import, ktx2, write_grid, write_hci, write_quilt, write_transforms,
 };
 use lf_format::{Metadata, TexelEncoding};
-use lf_math::{Cell, Coverage, SlabTexels};
+use lf_math::{Cell, Coverage, Face, LightFieldGeometry, SlabTexels};
 
 use crate::exchange_args::{ExportArgs, ExportFormat, ImportArgs};
 use crate::input::{MAX_DECODED_BYTES, load, open};
@@ -91,18 +91,21 @@ fn export_pictures<T: Texel>(args: &ExportArgs, field: &LightField<'_, T>) -> Re
     Ok(())
 }
 
-/// The slab that was asked for, or the only one.
 fn one_slab<'a, T: Texel>(args: &ExportArgs, field: &LightField<'a, T>) -> Result<SlabPictures<'a, T>> {
-    let slabs = field.geometry().slabs();
+    let position = slab_of(field.geometry(), args.face).context("this format holds one slab")?;
+    Ok(field.pictures(position)?)
+}
+
+/// The position of the slab that was asked for, or of the only one.
+pub(crate) fn slab_of(geometry: &LightFieldGeometry, face: Option<Face>) -> Result<usize> {
+    let slabs = geometry.slabs();
     let names: Vec<&str> = slabs.iter().map(|slab| slab.face().name()).collect();
-    let position = match args.face {
+    let position = match face {
         None if slabs.len() == 1 => Some(0),
         None => None,
         Some(face) => slabs.iter().position(|slab| slab.face() == face),
     };
-    let position =
-        position.with_context(|| format!("this format holds one slab; choose by --face: {}", names.join(", ")))?;
-    Ok(field.pictures(position)?)
+    position.with_context(|| format!("choose a slab by --face: {}", names.join(", ")))
 }
 
 pub(crate) fn run_import(args: &ImportArgs) -> Result<()> {

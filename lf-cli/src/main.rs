@@ -15,6 +15,7 @@ mod device;
 mod exchange;
 mod exchange_args;
 mod frames;
+mod holdout;
 mod info;
 mod input;
 mod methods;
@@ -25,6 +26,8 @@ mod pictures;
 mod plan;
 mod plan_args;
 mod progress;
+mod refocus;
+mod refocus_args;
 mod render;
 mod scene_args;
 mod sources;
@@ -62,6 +65,8 @@ fn run(command: &Command) -> Result<()> {
         Command::Info(args) => info::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Crop(args) => crop::run(args),
+        Command::Refocus(args) => refocus::run(args),
+        Command::Holdout(args) => holdout::run(args),
         Command::Export(args) => exchange::run_export(args),
         Command::Import(args) => exchange::run_import(args),
     }

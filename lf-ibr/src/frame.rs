@@ -31,6 +31,6 @@ pub fn reflect_frame(gbuffer: &GBuffer, environment: &(impl Environment + ?Sized
 }
 
 /// 8-bit values rounded to nearest, as a GPU writes an 8-bit target.
-fn encode(color: Vec4) -> [u8; 4] {
+pub(crate) fn encode(color: Vec4) -> [u8; 4] {
     color.to_array().map(|c| (255.0 * c + 0.5) as u8)
 }

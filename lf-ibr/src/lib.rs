@@ -10,6 +10,9 @@
 //! * [`DistanceField`]: a cube that knows how far everything is; [`ProbeField`]: several of them;
 //! * [`GuidedField`]: a few sharp distance cubes and a small light field of depths that says where to look in them.
 //!
+//! From the images of a slab alone, [`focus_from_images`] finds its focal plane, and [`view`] makes pictures between its cameras, to be
+//! held against some that were left out: [`hold_out`].
+//!
 //! Colours are interpolated as they are stored, sRGB-encoded, as the paper's hardware did and as the GPU passes do.
 
 #![forbid(unsafe_code)]
@@ -17,25 +20,31 @@
 mod bilinear;
 mod cube;
 mod distance;
+mod focus;
 mod frame;
 mod gbuffer;
 mod guide;
 mod guided;
+mod holdout;
 mod march;
 mod proxy;
 mod slabs;
 mod surface;
 mod texel;
+mod views;
 
 pub use cube::CubeField;
 pub use distance::{DistanceField, ProbeField};
+pub use focus::{ImageFocus, PlaneError, focus_from_images};
 pub use frame::{Environment, reflect_frame};
 pub use gbuffer::{Fragment, GBuffer};
 pub use guide::DepthGuide;
 pub use guided::GuidedField;
+pub use holdout::{HoldOut, LeftOut, hold_out};
 pub use proxy::{BoxCube, SphereCube};
 pub use slabs::SlabField;
 pub use texel::Texel;
+pub use views::{Blend, depth_planes, view};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,5 +1,7 @@
 //! Reflections from light field slabs.
 
+use std::ops::Range;
+
 use glam::{Vec2, Vec3};
 use lf_math::{CameraTap, GeometryError, ImageWindow, LightFieldGeometry, Ray, SlabTexels};
 
@@ -61,8 +63,15 @@ impl<T: Texel> Environment for SlabField<T> {
     }
 }
 
+/// Bilinear fetch from one camera's image, at a place of the whole image; `None` outside its window.
+pub(crate) fn fetch_within<T: Texel>(image: &ImageWindow<'_, T>, uv: Vec2) -> Option<Vec3> {
+    let inside = |at: f32, window: &Range<u32>| at >= window.start as f32 && at <= (window.end - 1) as f32;
+    let tap = CameraTap { uv, ..CameraTap::default() };
+    (inside(uv.x, &image.u) && inside(uv.y, &image.v)).then(|| fetch(image, &tap))
+}
+
 /// Bilinear fetch from one camera's image, at the nearest place of its window.
-fn fetch<T: Texel>(image: &ImageWindow<'_, T>, tap: &CameraTap) -> Vec3 {
+pub(crate) fn fetch<T: Texel>(image: &ImageWindow<'_, T>, tap: &CameraTap) -> Vec3 {
     let (width, height) = (image.u.len(), image.v.len());
     let first = Vec2::new(image.u.start as f32, image.v.start as f32);
     let last = Vec2::new((width - 1) as f32, (height - 1) as f32);

@@ -155,18 +155,32 @@ impl Slab {
         Vec2::new(per_step(0), per_step(1))
     }
 
+    /// [`Self::disparity`] of a plane at any inverse depth, 1/m: 0 is infinity, and of pictures that were rectified to agree on
+    /// a plane, what lies behind it has a negative one.
+    #[must_use]
+    pub fn disparity_at(&self, inverse_depth: f32) -> Vec2 {
+        let per_step = |i: usize| self.st[i].step() * inverse_depth / self.uv[i].step();
+        Vec2::new(per_step(0), per_step(1))
+    }
+
     /// The four cameras around a ray with their image positions and bilinear weights (Eqs. 5 and 6; Fig. 8).
     ///
     /// Indices outside the slab are clamped to its edge; ask [`Self::contains`] first where that matters. On an axis with
     /// a single camera both neighbours are that camera.
     #[must_use]
     pub fn taps(&self, coord: &SlabCoord) -> [CameraTap; 4] {
+        self.taps_with(coord, self.disparity())
+    }
+
+    /// As [`Self::taps`], with a disparity other than that of the focal plane.
+    #[must_use]
+    pub fn taps_with(&self, coord: &SlabCoord, disparity: Vec2) -> [CameraTap; 4] {
         let last = |axes: &[SampledAxis; 2]| Vec2::new(axes[0].last_index(), axes[1].last_index());
         let st = coord.st.clamp(Vec2::ZERO, last(&self.st));
         // The last camera is reached with weight 1 from the last but one, so that both always exist.
         let base = st.floor().min((last(&self.st) - 1.0).max(Vec2::ZERO));
         let fraction = st - base;
-        let (uv, uv_last, disparity) = (coord.uv, last(&self.uv), self.disparity());
+        let (uv, uv_last) = (coord.uv, last(&self.uv));
         [[0, 0], [1, 0], [0, 1], [1, 1]].map(|corner: [u32; 2]| {
             let offset = Vec2::new(corner[0] as f32, corner[1] as f32);
             let shares = (1.0 - offset) + (2.0 * offset - 1.0) * fraction;
@@ -177,6 +191,20 @@ impl Slab {
                 weight: shares.x * shares.y,
             }
         })
+    }
+
+    /// Camera and texel of the `n`-th of the samples spread evenly over the four axes: an additive sequence whose steps are powers
+    /// of 1/g, where g⁵ = g + 1 (Roberts 2018). Any number of them, from the first on, is spread so; some samples come twice.
+    #[must_use]
+    pub fn spread_sample(&self, n: u32) -> [[u32; 2]; 2] {
+        const STEPS: [f64; 4] =
+            [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_721_037_806_7, 0.538_597_257_223_612_6];
+        let counts = [self.st[0].count(), self.st[1].count(), self.uv[0].count(), self.uv[1].count()];
+        let place = |i: usize| {
+            let turns = f64::from(n) * STEPS[i];
+            ((turns - libm::floor(turns)) * f64::from(counts[i])) as u32
+        };
+        [[place(0), place(1)], [place(2), place(3)]]
     }
 
     /// Distance from the camera plane to a cell-space point, along the face's axis.
@@ -223,6 +251,31 @@ mod tests {
                 assert!((coord.uv - texel).abs().max_element() < 1e-4, "{face:?} {coord:?}");
             }
         }
+    }
+
+    #[test]
+    fn disparities_are_those_of_focal_planes_and_reach_beyond_infinity() {
+        let (plain, focused) = (slab(Face::PosX, None), slab(Face::PosX, Some(2.5)));
+        assert!((plain.disparity_at(0.4) - focused.disparity()).abs().max_element() < 1e-6);
+        assert_eq!((plain.disparity_at(0.0), plain.disparity_at(-0.4)), (Vec2::ZERO, -plain.disparity_at(0.4)));
+        let coord = SlabCoord { st: Vec2::new(3.3, 7.9), uv: Vec2::new(50.0, 60.5) };
+        assert_eq!(plain.taps_with(&coord, focused.disparity()), focused.taps(&coord));
+        let beyond = plain.taps_with(&coord, Vec2::new(-2.0, 0.5));
+        assert!((beyond[3].uv - Vec2::new(50.0 - 2.0 * (3.3 - 4.0), 60.5 + 0.5 * (7.9 - 8.0))).length() < 1e-4);
+    }
+
+    /// Every camera and every column of texels gets its share.
+    #[test]
+    fn spread_samples_are_spread() {
+        let slab = slab(Face::PosX, None);
+        let (mut cameras, mut columns) = ([0; 32 * 32], [0; 128]);
+        for n in 0..1 << 15 {
+            let [camera, texel] = slab.spread_sample(n);
+            cameras[(camera[1] * 32 + camera[0]) as usize] += 1;
+            columns[texel[0] as usize] += 1;
+        }
+        assert!(cameras.iter().all(|n| (24..=40).contains(n)), "{:?}", cameras.iter().min());
+        assert!(columns.iter().all(|n| (250..=262).contains(n)), "{:?}", columns.iter().min());
     }
 
     #[test]

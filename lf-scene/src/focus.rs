@@ -25,26 +25,64 @@ struct Depths {
 /// Number of bins of inverse depth.
 const BINS: usize = 4096;
 
+/// Which focal plane suits the depths z that a slab's rays meet. Errors grow with how far disparities are from that of the focal plane,
+/// and those are as 1/z: each rule is a middle of 1/z.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum FocusRule {
+    /// `1 / median(1/z)`: the least mean absolute error of disparity. A few near things do not move it.
+    #[default]
+    Median,
+    /// `1 / mean(1/z)`: the least mean squared error of disparity.
+    LeastSquares,
+    /// `2 / (1/min z + 1/max z)`: the least largest error of disparity (Chai et al., *Plenoptic Sampling*, SIGGRAPH 2000). What is nearer
+    /// than a quarter of the cell's smallest half extent counts as being there.
+    Minimax,
+    /// No focal plane: infinity.
+    Infinity,
+    /// This far from the camera planes, metres, whatever there is.
+    At(f32),
+}
+
+/// [`focus_by`] the default rule.
+///
+/// # Errors
+/// As there.
+pub fn focus(tracer: &Tracer, geometry: &LightFieldGeometry) -> Result<LightFieldGeometry, GeometryError> {
+    focus_by(tracer, geometry, FocusRule::default())
+}
+
 /// The same slabs, each with the focal plane that suits the scene: a survey by distances alone, without shading.
 ///
 /// Cast are the rays of 131,072 samples that pass through the cell, spread evenly over the slab, or of all if there are
-/// fewer: for the paper's set-up 3.5 % of what is captured. The focal plane is put at `1 / median(1/z)`, z being the depth of
-/// what they meet: the disparity of least mean absolute error. (Chai et al. 2000 give the harmonic mean of the extremes,
-/// the minimax choice; a single object that touches the camera plane would pull that, or the mean, to zero depth.) The
-/// result does not depend on the number of threads.
+/// fewer: for the paper's set-up 3.5 % of what is captured. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// If a focal plane is so near that the disparity is not finite.
-pub fn focus(tracer: &Tracer, geometry: &LightFieldGeometry) -> Result<LightFieldGeometry, GeometryError> {
+pub fn focus_by(
+    tracer: &Tracer,
+    geometry: &LightFieldGeometry,
+    rule: FocusRule,
+) -> Result<LightFieldGeometry, GeometryError> {
     let focused = geometry.slabs().iter().enumerate().map(|(number, slab)| {
-        let none = || Depths::new(geometry.cell());
-        let seen = through_cell(geometry, number).into_par_iter().fold(none, |mut depths, ray| {
-            depths.add(inverse_depth(tracer, geometry, number, &ray));
-            depths
-        });
-        slab.with_focal_depth(seen.reduce(none, Depths::plus).focal_depth())
+        slab.with_focal_depth(match rule {
+            FocusRule::Infinity => None,
+            FocusRule::At(depth) => Some(depth),
+            FocusRule::Median => survey(tracer, geometry, number).depth_at(Depths::median),
+            FocusRule::LeastSquares => survey(tracer, geometry, number).depth_at(Depths::mean),
+            FocusRule::Minimax => survey(tracer, geometry, number).depth_at(Depths::middle),
+        })
     });
     LightFieldGeometry::new(*geometry.cell(), focused.collect::<Result<_, _>>()?)
+}
+
+/// What the rays of a slab meet.
+fn survey(tracer: &Tracer, geometry: &LightFieldGeometry, number: usize) -> Depths {
+    let none = || Depths::new(geometry.cell());
+    let seen = through_cell(geometry, number).into_par_iter().fold(none, |mut depths, ray| {
+        depths.add(inverse_depth(tracer, geometry, number, &ray));
+        depths
+    });
+    seen.reduce(none, Depths::plus)
 }
 
 /// Stored rays of a slab that pass through the cell, evenly spread.
@@ -71,14 +109,9 @@ fn nth_sample(slab: &Slab, n: u32) -> [Vec2; 2] {
     [at(camera, across), at(texel, width)]
 }
 
-/// Samples spread evenly over the four axes: an additive sequence whose steps are powers of 1/g, where g⁵ = g + 1 (Roberts
-/// 2018).
+/// The sample of number `n` of those spread evenly: camera and texel.
 fn spread_sample(slab: &Slab, n: u32) -> [Vec2; 2] {
-    const STEPS: [f64; 4] =
-        [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_721_037_806_7, 0.538_597_257_223_612_6];
-    let counts = [slab.cameras()[0], slab.cameras()[1], slab.resolution()[0], slab.resolution()[1]];
-    let place = |i: usize| ((f64::from(n) * STEPS[i]).fract() * f64::from(counts[i])).floor() as f32;
-    [Vec2::new(place(0), place(1)), Vec2::new(place(2), place(3))]
+    slab.spread_sample(n).map(|[first, second]| Vec2::new(first as f32, second as f32))
 }
 
 impl Depths {
@@ -99,15 +132,31 @@ impl Depths {
         self
     }
 
-    /// `1 / median(1/z)`; none (infinity) if nothing was seen, or most of it too far for the first bin.
-    fn focal_depth(&self) -> Option<f32> {
+    /// The depth of a middle bin; none (infinity) if nothing was seen, or that is too far for the first bin.
+    fn depth_at(&self, middle: impl Fn(&Self) -> Option<f64>) -> Option<f32> {
+        middle(self).filter(|&i| i >= 1.0).map(|i| (1.0 / (self.bin * (i + 0.5))) as f32)
+    }
+
+    fn median(&self) -> Option<f64> {
         let half = self.counts.iter().sum::<u64>().div_ceil(2);
         let mut below = 0;
         let median = self.counts.iter().position(|count| {
             below += count;
             below >= half
         });
-        median.filter(|&i| i > 0).map(|i| (1.0 / (self.bin * (i as f64 + 0.5))) as f32)
+        median.map(|i| i as f64)
+    }
+
+    fn mean(&self) -> Option<f64> {
+        let total: u64 = self.counts.iter().sum();
+        let sum: f64 = (0u32..).zip(&self.counts).map(|(i, &count)| f64::from(i) * count as f64).sum();
+        (total > 0).then(|| sum / total as f64)
+    }
+
+    /// Between the nearest and the farthest.
+    fn middle(&self) -> Option<f64> {
+        let seen = |count: &u64| *count > 0;
+        Some(0.5 * (self.counts.iter().position(seen)? + self.counts.iter().rposition(seen)?) as f64)
     }
 }
 
@@ -140,6 +189,36 @@ mod tests {
                 assert!((rank(0.49) - bin..=rank(0.51) + bin).contains(&found), "{placement:?} {number}: {found}");
             }
         }
+    }
+
+    /// Three depths in known shares: closed forms.
+    #[test]
+    fn each_rule_has_its_middle() {
+        let mut depths = Depths::new(&museum::cell());
+        for (inverse, times) in [(0.2, 5), (0.5, 4), (1.4, 1)] {
+            (0..times).for_each(|_| depths.add(inverse));
+        }
+        let bin = depths.bin;
+        let near = |depth: Option<f32>, inverse: f64| (1.0 / f64::from(depth.unwrap()) - inverse).abs() <= bin;
+        assert!(near(depths.depth_at(Depths::median), 0.2));
+        assert!(near(depths.depth_at(Depths::mean), 0.44));
+        // The harmonic mean of 1/0.2 and 1/1.4 is 1/0.8.
+        assert!(near(depths.depth_at(Depths::middle), 0.8));
+        let nothing = Depths::new(&museum::cell());
+        for rule in [Depths::median, Depths::mean, Depths::middle] {
+            assert_eq!(nothing.depth_at(rule), None);
+        }
+    }
+
+    #[test]
+    fn planes_that_are_given_are_taken() {
+        let tracer = Tracer::new(museum::scene());
+        let geometry = LightFieldGeometry::around(museum::cell(), PlanePlacement::CellCenter, 3, 4).unwrap();
+        for (rule, depth) in [(FocusRule::Infinity, None), (FocusRule::At(1.5), Some(1.5))] {
+            let focused = focus_by(&tracer, &geometry, rule).unwrap();
+            assert!(focused.slabs().iter().all(|slab| slab.focal_depth() == depth));
+        }
+        assert!(focus_by(&tracer, &geometry, FocusRule::At(0.0)).is_err());
     }
 
     #[test]

@@ -57,7 +57,7 @@ pub use cube::{capture_cube, capture_distance_cube, trace_cube};
 pub use embedded::{EMBEDDED, EmbeddedScene, beside, corridor, forest, mirror_box, museum};
 pub use environment::{Environment, EnvironmentMap};
 pub use error::{ImportError, SceneError};
-pub use focus::focus;
+pub use focus::{FocusRule, focus, focus_by};
 pub use free_space::{FreeSpace, find_free_space, is_free};
 pub use import::{
     ImportOptions, Imported, ImportedEnvironment, ImportedMesh, SceneCamera, import_environment, import_gltf,
