@@ -8,7 +8,8 @@ use wgpu::util::DeviceExt;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{ReflectionPass, Shader, bilinear_sampler, buffer, shader_source};
+use crate::pass::{ReflectionPass, bilinear_sampler, buffer};
+use crate::shader::Shader;
 
 /// What a cube map is projected on, cell space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +73,7 @@ impl ReflectionPass {
             let sampler = bilinear_sampler(gpu);
             let resources =
                 [(1, wgpu::BindingResource::TextureView(&view)), (2, wgpu::BindingResource::Sampler(&sampler))];
-            Self::new(gpu, &shader_source(Shader::Cube(CubeShader::Infinite), false), &resources)
+            Self::new(gpu, Shader::Cube(CubeShader::Infinite), &resources)
         })
     }
 
@@ -133,7 +134,7 @@ impl ReflectionPass {
                 resources.push((4, wgpu::BindingResource::TextureView(depths)));
                 resources.push((5, wgpu::BindingResource::Sampler(&nearest)));
             }
-            Self::new(gpu, &shader_source(Shader::Cube(shader), false), &resources)
+            Self::new(gpu, Shader::Cube(shader), &resources)
         })
     }
 }

@@ -10,7 +10,8 @@ use lf_math::LightFieldGeometry;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{SlabShader, buffer};
+use crate::pass::buffer;
+use crate::shader::SlabShader;
 use crate::uniforms::SlabsUniform;
 use crate::windows::WindowTable;
 
@@ -198,6 +199,11 @@ impl SlabTexture {
         Ok(Self { view, uniform, windows, storage, geometry, bytes })
     }
 
+    /// Where slabs.wgsl finds the geometry.
+    pub(crate) fn uniform(&self) -> &wgpu::Buffer {
+        &self.uniform
+    }
+
     /// The resources that slabs.wgsl asks for.
     pub(crate) fn bindings<'a>(&'a self, sampler: &'a wgpu::Sampler) -> Vec<(u32, wgpu::BindingResource<'a>)> {
         let mut all = vec![
@@ -211,7 +217,7 @@ impl SlabTexture {
 
     /// Which variant of the shader it needs.
     pub(crate) fn shader(&self) -> SlabShader {
-        SlabShader { storage: self.storage, cropped: self.windows.is_some() }
+        SlabShader::new(self.storage, self.windows.is_some(), &self.geometry)
     }
 
     /// The cell and the slabs.

@@ -10,6 +10,9 @@
 //! * [`DistanceField`]: a cube that knows how far everything is; [`ProbeField`]: several of them;
 //! * [`GuidedField`]: a few sharp distance cubes and a small light field of depths that says where to look in them.
 //!
+//! [`draw_frame`] draws any number of placed and tinted [`Reflector`]s and what is behind them; [`SlabField::viewed`] shows which
+//! slab answered, and which rays none holds.
+//!
 //! Colours are interpolated as they are stored, sRGB-encoded, as the paper's hardware did and as the GPU passes do.
 
 #![forbid(unsafe_code)]
@@ -23,6 +26,7 @@ mod guide;
 mod guided;
 mod march;
 mod proxy;
+mod scene;
 mod slabs;
 mod texel;
 
@@ -33,7 +37,8 @@ pub use gbuffer::{Fragment, GBuffer};
 pub use guide::DepthGuide;
 pub use guided::GuidedField;
 pub use proxy::{BoxCube, SphereCube};
-pub use slabs::SlabField;
+pub use scene::{Reflector, draw_frame};
+pub use slabs::{SlabField, ViewedSlabs};
 pub use texel::Texel;
 
 #[cfg(doctest)]

@@ -30,11 +30,15 @@ mod image;
 mod mesh;
 mod metrics;
 mod needed;
+mod normal_map;
 mod pinhole;
+mod placement;
 mod ray;
+mod reflectance;
 mod shadow;
 mod slab;
 mod texels;
+mod view;
 mod windows;
 
 pub use axis::SampledAxis;
@@ -50,10 +54,14 @@ pub use image::Image;
 pub use mesh::TriangleMesh;
 pub use metrics::{ImageError, image_error};
 pub use needed::{NeededImage, NeededTexels};
+pub use normal_map::NormalMap;
 pub use pinhole::{Pinhole, near_plane};
+pub use placement::Placement;
 pub use ray::{Ray, normalized, reflect};
+pub use reflectance::Reflectance;
 pub use slab::{CameraTap, Slab, SlabCoord};
 pub use texels::{ImageWindow, SlabTexels};
+pub use view::View;
 pub use windows::Windows;
 
 #[cfg(doctest)]

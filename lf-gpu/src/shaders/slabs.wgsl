@@ -1,6 +1,6 @@
 // Light field slabs: Figs. 6 and 8 of Yu, Yang & McMillan in one pass. CPU twins: lf-math/src/slab.rs, lf-ibr/src/slabs.rs.
-// `fetch` comes from volume.wgsl or array.wgsl, `fetch_camera` and `make_up` from whole.wgsl or cropped.wgsl, `displayed` from
-// srgb.wgsl or linear.wgsl.
+// `face_of` comes from faces.wgsl or one_face.wgsl, `fetch` from volume.wgsl or array.wgsl, `fetch_camera` and `make_up` from
+// whole.wgsl or cropped.wgsl, `shifted` from focused.wgsl or unfocused.wgsl.
 
 // One slab; pairs are along (s, t) or (u, v). Mirrors `SlabUniform` in uniforms.rs.
 struct Slab {
@@ -36,6 +36,15 @@ struct Slabs {
     faces: array<Slab, 6>,
 }
 
+// A ray in the real-valued sample indices of the slab that answers it; its face is NO_FACE if there is none.
+struct Indexed {
+    face: u32,
+    st: vec2f,
+    uv: vec2f,
+}
+
+const NO_FACE = 6u;
+
 @group(0) @binding(1) var<uniform> slabs: Slabs;
 @group(0) @binding(2) var bilinear: sampler;
 
@@ -53,21 +62,29 @@ fn tangential(v: vec3f, axis: u32) -> vec2f {
     return vec2f(v[(axis + 1u) % 3u], v[(axis + 2u) % 3u]);
 }
 
-fn look_up(origin: vec3f, direction: vec3f) -> vec3f {
-    let axis = dominant_axis(direction);
-    let along = direction[axis];
-    let face = 2u * axis + select(0u, 1u, along < 0.0);
-    let slab = slabs.faces[face];
-    if slab.present == 0u || along == 0.0 {
-        return vec3f(0.0);
+fn index_ray(origin: vec3f, direction: vec3f) -> Indexed {
+    let face = face_of(direction);
+    if face == NO_FACE {
+        return Indexed(NO_FACE, vec2f(0.0), vec2f(0.0));
     }
+    let axis = face / 2u;
+    let along = direction[axis];
+    let slab = slabs.faces[face];
     // Eqs. 3 and 4: where the ray crosses the camera plane, and its slope.
     let slope = tangential(direction, axis) / abs(along);
     let run = sign(along) * (slab.plane - origin[axis]);
     let position = tangential(origin, axis) + run * slope;
     // Eq. 1.
-    let st = clamp((position - slab.st_first) / slab.st_step, vec2f(0.0), slab.st_last);
-    let uv = (slope - slab.uv_first) / slab.uv_step;
+    return Indexed(face, (position - slab.st_first) / slab.st_step, (slope - slab.uv_first) / slab.uv_step);
+}
+
+// The light along a ray, as its texels are stored.
+fn answer(ray: Indexed) -> vec3f {
+    if ray.face == NO_FACE {
+        return vec3f(0.0);
+    }
+    let slab = slabs.faces[ray.face];
+    let st = clamp(ray.st, vec2f(0.0), slab.st_last);
     // Eq. 5: the four cameras around it; the last is reached with weight 1 from the last but one.
     let base = min(floor(st), max(slab.st_last - 1.0, vec2f(0.0)));
     let fraction = st - base;
@@ -77,8 +94,12 @@ fn look_up(origin: vec3f, direction: vec3f) -> vec3f {
         let shares = (1.0 - corner) + (2.0 * corner - 1.0) * fraction;
         let camera = min(base + corner, slab.st_last);
         // Eq. 6, and never past the image's own texels.
-        let tap = clamp(uv + slab.disparity * (st - camera), vec2f(0.0), slab.uv_last);
-        sum += shares.x * shares.y * fetch_camera(face, vec2u(camera), tap);
+        let tap = clamp(shifted(ray, st - camera), vec2f(0.0), slab.uv_last);
+        sum += shares.x * shares.y * fetch_camera(ray.face, vec2u(camera), tap);
     }
-    return displayed(make_up(sum));
+    return make_up(sum);
+}
+
+fn look_up(origin: vec3f, direction: vec3f) -> vec3f {
+    return answer(index_ray(origin, direction));
 }
