@@ -18,6 +18,7 @@ use crate::methods_args::MethodsArgs;
 use crate::plan_args::PlanArgs;
 use crate::refocus_args::{HoldoutArgs, RefocusArgs};
 use crate::scene_args::{LightArgs, SceneArgs, ViewArgs};
+use crate::sources::REFLECTOR_RADIUS;
 
 /// Reflections with parallax from light field slabs: capture, compress, inspect and render them.
 #[derive(Debug, Parser)]
@@ -108,9 +109,28 @@ pub(crate) struct RenderArgs {
     /// The picture to write (.png)
     #[arg(long, value_name = "PNG")]
     pub(crate) out: PathBuf,
-    /// What mirrors: `sphere`, `teapot` or an OBJ file
-    #[arg(long, value_name = "MESH", default_value = "teapot")]
-    pub(crate) reflector: String,
+    /// What mirrors: `sphere`, `teapot` or an OBJ file. Behind an `@` its place and radius, seen from the cell's centre, in edge
+    /// lengths of the cell: x,y,z or x,y,z,radius. May be given several times
+    #[arg(long, value_name = "MESH[@X,Y,Z[,R]]", default_value = "teapot")]
+    pub(crate) reflector: Vec<ReflectorArg>,
+    /// Shares of red, green and blue that are reflected, of linear light
+    #[arg(long, value_name = "R,G,B", default_value = "1,1,1", conflicts_with = "against")]
+    pub(crate) tint: TintArg,
+    /// Reflect this share at perpendicular sight (glass: 0.04), more towards grazing sight, by Schlick's approximation
+    #[arg(long, value_name = "F0", value_parser = share, conflicts_with = "against")]
+    pub(crate) fresnel: Option<f32>,
+    /// Bend the reflectors' normals by a tangent-space normal map (PNG or JPEG), laid on from all three axes
+    #[arg(long, value_name = "PICTURE", conflicts_with = "against")]
+    pub(crate) normal_map: Option<PathBuf>,
+    /// How often the normal map fits into an edge of the cell
+    #[arg(long, value_name = "N", default_value_t = 4.0, value_parser = repeats, requires = "normal_map")]
+    pub(crate) normal_repeats: f32,
+    /// What is behind the reflectors
+    #[arg(long, value_enum, default_value_t = Behind::None, conflicts_with = "against")]
+    pub(crate) background: Behind,
+    /// What is painted
+    #[arg(long, value_enum, default_value_t = ViewArg::Color, conflicts_with = "against")]
+    pub(crate) view: ViewArg,
     /// Where the eye stands, seen from the cell's centre, in edge lengths of the cell, as x,y,z
     #[arg(long, value_name = "X,Y,Z", default_value = "1.4,0.5,0.6", allow_hyphen_values = true)]
     pub(crate) eye: EyeArg,
@@ -126,6 +146,28 @@ pub(crate) struct RenderArgs {
     pub(crate) against: Option<String>,
     #[command(flatten)]
     pub(crate) light: LightArgs,
+}
+
+/// What is behind the reflectors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Behind {
+    /// Grey
+    None,
+    /// The scene, from the same slabs; they hold all of it if the eye is inside the cell
+    Slabs,
+}
+
+/// What a frame paints where it asks the slabs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ViewArg {
+    /// The light
+    Color,
+    /// Half the light, half a colour for the slab that answers
+    Slabs,
+    /// The light, and magenta where a ray lies outside the slabs
+    Range,
+    /// The rays' indices: s in red, t in green, the mean of u and v in blue
+    Stuv,
 }
 
 /// Memory that reading a file may take, MiB.
@@ -211,6 +253,20 @@ pub(crate) struct CellArg {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct EyeArg(pub(crate) Vec3);
 
+/// A reflector given on the command line.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ReflectorArg {
+    /// A built-in mesh or a file.
+    pub(crate) mesh: String,
+    /// Edge lengths of the cell.
+    pub(crate) place: Vec3,
+    pub(crate) radius: f32,
+}
+
+/// A tint given on the command line, each share within 0 … 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TintArg(pub(crate) Vec3);
+
 /// What a preset stands for.
 pub(crate) struct Sampling {
     /// Per axis.
@@ -278,6 +334,18 @@ fn lambda(text: &str) -> Result<f32, String> {
     parsed.ok_or_else(|| "expected a number from 0 to 1e6".to_owned())
 }
 
+/// A share of light.
+fn share(text: &str) -> Result<f32, String> {
+    let parsed = text.trim().parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    parsed.ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}
+
+/// How often something repeats.
+fn repeats(text: &str) -> Result<f32, String> {
+    let parsed = text.trim().parse().ok().filter(|repeats| (1e-3..=1e3).contains(repeats));
+    parsed.ok_or_else(|| "expected a number from 0.001 to 1000".to_owned())
+}
+
 /// Exactly `N` numbers set apart by commas, within ±1e12: beyond that the tracer's products leave `f32`.
 pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let parsed: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse::<f64>()).collect();
@@ -295,6 +363,37 @@ impl FromStr for CellArg {
             return Err("the size must be greater than 0".to_owned());
         }
         Ok(Self { center: DVec3::new(x, y, z), size: size as f32 })
+    }
+}
+
+impl FromStr for ReflectorArg {
+    type Err = String;
+
+    /// What follows the last `@` is a place if it is three or four numbers, else part of a file's name.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let placed = text.rsplit_once('@').and_then(|(mesh, place)| {
+            let [x, y, z, radius] = numbers(place).or_else(|_| numbers(&format!("{place},{REFLECTOR_RADIUS}"))).ok()?;
+            Some((mesh, Vec3::new(x as f32, y as f32, z as f32), radius as f32))
+        });
+        let (mesh, place, radius) = placed.unwrap_or((text, Vec3::ZERO, REFLECTOR_RADIUS));
+        if radius <= 0.0 {
+            return Err("the radius must be greater than 0".to_owned());
+        }
+        Ok(Self { mesh: mesh.to_owned(), place, radius })
+    }
+}
+
+impl FromStr for TintArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let shares: [f64; 3] = numbers(text)?;
+        let tint = Vec3::from(shares.map(|share| share as f32));
+        if tint.cmpge(Vec3::ZERO).all() && tint.cmple(Vec3::ONE).all() {
+            Ok(Self(tint))
+        } else {
+            Err("expected three numbers from 0 to 1".to_owned())
+        }
     }
 }
 
@@ -323,6 +422,12 @@ mod tests {
         for bad in ["", "1,2,3", "1,2,3,0", "1,2,3,nan", "1,2,3,4,5", "1,2,3,-1", "0,0,0,1e29", "inf,0,0,1"] {
             assert!(bad.parse::<CellArg>().is_err(), "{bad}");
         }
+        let reflector = |mesh: &str, place, radius| Ok(ReflectorArg { mesh: mesh.to_owned(), place, radius });
+        assert_eq!("a@b.obj".parse(), reflector("a@b.obj", Vec3::ZERO, REFLECTOR_RADIUS));
+        assert_eq!("sphere@0,1,-2".parse(), reflector("sphere", Vec3::new(0.0, 1.0, -2.0), REFLECTOR_RADIUS));
+        assert_eq!("a@b.obj@0,0,0,0.2".parse(), reflector("a@b.obj", Vec3::ZERO, 0.2));
+        assert!("sphere@0,0,0,-1".parse::<ReflectorArg>().is_err());
+        assert!("1,1,1.5".parse::<TintArg>().is_err() && "0,0.5,1".parse::<TintArg>().is_ok());
         assert_eq!("-1,0,2".parse::<EyeArg>(), Ok(EyeArg(Vec3::new(-1.0, 0.0, 2.0))));
     }
 }

@@ -2,45 +2,105 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
-use glam::Vec3;
+use anyhow::{Context, Result, bail};
+use glam::{Quat, Vec3};
+use image::ImageReader;
 use lf_compress::PackedLightField;
 use lf_format::TexelEncoding;
-use lf_gpu::{Gpu, MirrorMesh, ReflectionPass, SlabTexture, Target};
-use lf_ibr::SlabField;
-use lf_math::{Cell, Image, Pinhole, TriangleMesh, image_error};
+use lf_gpu::{Frame, Gpu, MirrorMesh, NormalMapTexture, SlabRenderer, SlabTexture, Target};
+use lf_ibr::{SlabField, Texel, draw_frame};
+use lf_math::{Cell, Image, NormalMap, Pinhole, Placement, Reflectance, TriangleMesh, View, image_error};
 use lf_scene::reference::{self, Mirror};
 use lf_scene::{Scene, Tracer};
 
-use crate::args::RenderArgs;
-use crate::device::{CpuMethod, GpuMethod, Method, open_gpu, or_cpu};
+use crate::args::{Behind, ReflectorArg, RenderArgs, ViewArg};
+use crate::device::{open_gpu, or_cpu};
 use crate::frames::FOV_Y;
 use crate::input::{MAX_DECODED_BYTES, load};
 use crate::output::{check_writable, megabytes, png, print, write};
 use crate::pictures::{ERROR_GAIN, difference, display, masked, noise, over, strip};
-use crate::sources::{Loaded, builtin, from_file};
+use crate::sources::{Loaded, REFLECTOR_RADIUS, builtin, from_file};
+
+/// A reflector, ready to be drawn.
+struct Placed {
+    mesh: TriangleMesh,
+    placement: Placement,
+}
+
+/// What is drawn of a light field.
+struct Request<'a> {
+    field: &'a PackedLightField,
+    placed: &'a [Placed],
+    reflectance: Reflectance,
+    normal_map: Option<&'a NormalMap>,
+    background: bool,
+    view: View,
+    camera: &'a Pinhole,
+}
 
 pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     check_writable(&args.out)?;
     let field = load(&args.input)?;
     let cell = *field.geometry().cell();
-    let (_, mesh) = match args.reflector.as_str() {
-        name @ ("sphere" | "teapot") => builtin(name, &cell)?,
-        file => from_file(Path::new(file), &cell)?,
+    let placed = args.reflector.iter().map(|arg| place(arg, &cell)).collect::<Result<Vec<_>>>()?;
+    let edge = 2.0 * cell.half_extent().min_element();
+    let camera = Pinhole::look_at(args.eye.0 * edge, Vec3::ZERO, FOV_Y, args.size, args.size)?;
+    let normal_map =
+        args.normal_map.as_ref().map(|path| read_normal_map(path, args.normal_repeats / edge)).transpose()?;
+    let request = Request {
+        field: &field,
+        placed: &placed,
+        reflectance: Reflectance::new(args.tint.0, args.fresnel)?,
+        normal_map: normal_map.as_ref(),
+        background: args.background == Behind::Slabs,
+        view: args.view.view(),
+        camera: &camera,
     };
-    let eye = args.eye.0 * 2.0 * cell.half_extent().min_element();
-    let camera = Pinhole::look_at(eye, Vec3::ZERO, FOV_Y, args.size, args.size)?;
-    let on_gpu = open_gpu(args.cpu).map(|gpu| draw_on_gpu(&gpu, &field, &mesh, &camera));
+    let on_gpu = open_gpu(args.cpu).map(|gpu| draw_on_gpu(&gpu, &request));
     let picture = match or_cpu(on_gpu) {
         Some(picture) => picture,
-        None => draw_on_cpu(&field, &mesh, &camera)?,
+        None => draw_on_cpu(&request)?,
     };
     let (picture, note) = match &args.against {
-        None => (over(&picture, &Image::filled(args.size, args.size, [40, 40, 44, 255])), String::new()),
-        Some(scene) => against(&Loaded::open(scene, &args.light)?.scene, args, &cell, mesh, &camera, &picture)?,
+        None => {
+            let note = if request.view == View::Range { range_note(&picture) } else { String::new() };
+            (over(&picture, &Image::filled(args.size, args.size, [40, 40, 44, 255])), note)
+        }
+        Some(scene) => {
+            let [Placed { mesh, placement }] = &placed[..] else { bail!("--against takes one --reflector") };
+            let mesh = mesh.placed(placement)?;
+            against(&Loaded::open(scene, &args.light)?.scene, args, &cell, mesh, &camera, &picture)?
+        }
     };
     write(&args.out, &png(&picture)?)?;
     print(&(args.out.display().to_string() + &note))
+}
+
+/// The mesh of a reflector and where it stands.
+fn place(arg: &ReflectorArg, cell: &Cell) -> Result<Placed> {
+    let (_, mesh) = match arg.mesh.as_str() {
+        name @ ("sphere" | "teapot") => builtin(name, cell)?,
+        file => from_file(Path::new(file), cell)?,
+    };
+    let edge = 2.0 * cell.half_extent().min_element();
+    let placement = Placement::new(arg.radius / REFLECTOR_RADIUS, Quat::IDENTITY, arg.place * edge)?;
+    Ok(Placed { mesh, placement })
+}
+
+/// A picture of normals.
+fn read_normal_map(path: &Path, repeats: f32) -> Result<NormalMap> {
+    let read = || Ok::<_, image::ImageError>(ImageReader::open(path)?.with_guessed_format()?.decode()?.to_rgba8());
+    let picture = read().with_context(|| path.display().to_string())?;
+    let texels = picture.pixels().map(|texel| texel.0).collect();
+    Ok(NormalMap::new(Image::new(picture.width(), picture.height(), texels)?, repeats)?)
+}
+
+/// How many of the rays drawn lie outside the slabs.
+fn range_note(picture: &Image<[u8; 4]>) -> String {
+    let [r, g, b] = View::OUTSIDE.to_array().map(|c| (255.0 * c) as u8);
+    let count = |test: &dyn Fn(&&[u8; 4]) -> bool| picture.texels().iter().filter(test).count();
+    let (outside, all) = (count(&|texel| **texel == [r, g, b, 255]), count(&|texel| texel[3] != 0));
+    format!(": {outside} of {all} rays lie outside the slabs")
 }
 
 /// The picture beside the traced one and their difference, and what the error is.
@@ -70,26 +130,57 @@ fn against(
     Ok((panels, format!(": {:.2} dB PSNR over the mirror's pixels{noise}", error.psnr_db())))
 }
 
-fn draw_on_gpu(gpu: &Gpu, field: &PackedLightField, mesh: &TriangleMesh, camera: &Pinhole) -> Result<Image<[u8; 4]>> {
-    let texture = SlabTexture::new(gpu, field)?;
+fn draw_on_gpu(gpu: &Gpu, request: &Request<'_>) -> Result<Image<[u8; 4]>> {
+    let texture = SlabTexture::new(gpu, request.field)?;
     eprintln!("slabs    {}, {}", texture.storage(), megabytes(texture.bytes()));
-    let pass = ReflectionPass::slabs(gpu, &texture)?;
-    let target = Target::new(gpu, camera.width(), camera.height())?;
-    let mesh = MirrorMesh::new(gpu, mesh)?;
-    finish(GpuMethod { gpu, pass: &pass, target: &target, mesh: &mesh, camera })
+    let target = Target::new(gpu, request.camera.width(), request.camera.height())?;
+    let meshes =
+        request.placed.iter().map(|placed| MirrorMesh::new(gpu, &placed.mesh)).collect::<Result<Vec<_>, _>>()?;
+    let normal_map = request.normal_map.map(|map| NormalMapTexture::new(gpu, map)).transpose()?;
+    let reflector = |(mesh, placed): (_, &Placed)| lf_gpu::Reflector {
+        mesh,
+        placement: placed.placement,
+        reflectance: request.reflectance,
+        normal_map: normal_map.as_ref(),
+    };
+    let reflectors: Vec<_> = meshes.iter().zip(request.placed).map(reflector).collect();
+    let Request { camera, background, view, .. } = *request;
+    let frame = Frame { camera, reflectors: &reflectors, background, view };
+    SlabRenderer::new(gpu, &texture)?.draw(&target, &frame)?;
+    Ok(target.read(gpu)?)
 }
 
-fn draw_on_cpu(field: &PackedLightField, mesh: &TriangleMesh, camera: &Pinhole) -> Result<Image<[u8; 4]>> {
-    let geometry = field.geometry().clone();
+fn draw_on_cpu(request: &Request<'_>) -> Result<Image<[u8; 4]>> {
+    let (field, geometry) = (request.field, request.field.geometry().clone());
     if field.tilings().iter().all(|tiling| tiling.encoding() == TexelEncoding::Rgb16F) {
-        let environment = SlabField::new(geometry, field.decode_linear(MAX_DECODED_BYTES)?)?;
-        return finish(CpuMethod::new(&environment, mesh, camera));
+        return draw_field(&SlabField::new(geometry, field.decode_linear(MAX_DECODED_BYTES)?)?, request);
     }
-    let environment = SlabField::new(geometry, field.decode(MAX_DECODED_BYTES)?)?;
-    finish(CpuMethod::new(&environment, mesh, camera))
+    draw_field(&SlabField::new(geometry, field.decode(MAX_DECODED_BYTES)?)?, request)
 }
 
-fn finish(mut method: impl Method) -> Result<Image<[u8; 4]>> {
-    method.draw()?;
-    method.picture()
+fn draw_field<T: Texel>(field: &SlabField<T>, request: &Request<'_>) -> Result<Image<[u8; 4]>> {
+    // Views do not heed reflectances.
+    let reflectance = if request.view == View::Color { request.reflectance } else { Reflectance::MIRROR };
+    let reflectors: Vec<_> = request
+        .placed
+        .iter()
+        .map(|Placed { mesh, placement }| lf_ibr::Reflector {
+            mesh,
+            placement: *placement,
+            reflectance,
+            normal_map: request.normal_map,
+        })
+        .collect();
+    Ok(draw_frame(&reflectors, request.background, &field.viewed(request.view), request.camera)?)
+}
+
+impl ViewArg {
+    fn view(self) -> View {
+        match self {
+            Self::Color => View::Color,
+            Self::Slabs => View::Slabs,
+            Self::Range => View::Range,
+            Self::Stuv => View::Stuv,
+        }
+    }
 }

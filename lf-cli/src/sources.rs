@@ -16,7 +16,7 @@ use crate::scene_args::{LightArgs, SceneArgs};
 /// The eye's distance from the cell's centre in edge lengths. A cell found in free space leaves room for it.
 pub(crate) const EYE_DISTANCE: f32 = 1.6;
 /// A reflector's radius in edge lengths of the cell: it stays inside with a little air.
-const REFLECTOR_RADIUS: f32 = 0.48;
+pub(crate) const REFLECTOR_RADIUS: f32 = 0.48;
 
 /// A scene ready to be traced, with its cell.
 pub(crate) struct Source {

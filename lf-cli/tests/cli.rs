@@ -89,6 +89,44 @@ fn without_an_adapter_the_cpu_draws_and_says_so() {
     assert_eq!(fs::read(picture("without.png")).unwrap(), fs::read(picture("asked.png")).unwrap());
 }
 
+/// Several reflectors, tints, views and a background; what does not go together is refused.
+#[test]
+fn frames_are_drawn_as_asked() {
+    let folder = TempDir::new().unwrap();
+    let file = small_file(folder.path());
+    let picture = folder.path().join("frame.png").to_string_lossy().into_owned();
+    let from = |eye: &str, rest: &[&str]| {
+        lfslab(&[&["render", &file, "--cpu", "--size", "64", "--out", &picture, "--eye", eye], rest].concat())
+    };
+    let run = |rest: &[&str]| from("0,0,1.6", rest);
+    let render = |rest: &[&str]| {
+        let output = run(rest);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        (text(&output.stdout), image::open(&picture).unwrap().to_rgb8())
+    };
+    let two = ["--reflector", "sphere@-0.25,0,0,0.2", "--reflector", "sphere@0.25,0,0,0.2"];
+    let (_, plain) = render(&two);
+    let grey = [40, 40, 44];
+    assert_eq!(plain.get_pixel(32, 32).0, grey);
+    assert!(plain.get_pixel(22, 32).0 != grey && plain.get_pixel(42, 32).0 != grey);
+    let (_, red) = render(&[&two[..], &["--tint", "1,0,0"]].concat());
+    assert_eq!(red.get_pixel(22, 32).0[1..], [0, 0]);
+    let (_, glass) = render(&[&two[..], &["--fresnel", "0.04"]].concat());
+    let sum = |picture: &image::RgbImage| picture.get_pixel(22, 32).0.iter().map(|c| u32::from(*c)).sum::<u32>();
+    assert!(sum(&glass) < sum(&plain) / 2);
+    assert!(from("0,0,0.49", &[&two[..], &["--background", "slabs"]].concat()).status.success());
+    assert_ne!(image::open(&picture).unwrap().to_rgb8().get_pixel(32, 2).0, grey);
+    let (said, _) = render(&[&two[..], &["--view", "range"]].concat());
+    assert!(said.contains(": 0 of "), "{said}");
+    for view in ["slabs", "stuv"] {
+        assert_ne!(render(&[&two[..], &["--view", view]].concat()).1, plain);
+    }
+    for wrong in [&["--tint", "2,0,0"][..], &["--fresnel", "-1"], &["--view", "slabs", "--against", "museum"]] {
+        assert!(!run(wrong).status.success(), "{wrong:?}");
+    }
+    assert!(!run(&[&two[..], &["--against", "museum"]].concat()).status.success());
+}
+
 /// The error against the scene that was captured is the smaller one; with noise it is said how much.
 #[test]
 fn a_picture_is_held_against_a_scene() {

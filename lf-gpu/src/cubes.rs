@@ -8,7 +8,8 @@ use lf_math::{DistanceCube, Search};
 use crate::cube_textures::{CubeDepths, CubePicture, DeviceDepths};
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{ReflectionPass, Shader, bilinear_sampler, buffer, shader_source};
+use crate::pass::{ReflectionPass, bilinear_sampler, buffer};
+use crate::shader::Shader;
 
 /// What a cube map is projected on, cell space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +98,7 @@ impl ReflectionPass {
             let sampler = bilinear_sampler(gpu);
             let resources =
                 [(1, wgpu::BindingResource::TextureView(&view)), (2, wgpu::BindingResource::Sampler(&sampler))];
-            Self::new(gpu, &shader_source(Shader::Cube(CubeShader::Infinite), false), &resources)
+            Self::new(gpu, Shader::Cube(CubeShader::Infinite), &resources)
         })
     }
 
@@ -189,7 +190,7 @@ impl ReflectionPass {
                 Some(DeviceDepths::Buffer(depths)) => resources.push((4, depths.as_entire_binding())),
                 None => {}
             }
-            Self::new(gpu, &shader_source(Shader::Cube(shader), false), &resources)
+            Self::new(gpu, Shader::Cube(shader), &resources)
         })
     }
 }

@@ -1,22 +1,22 @@
-//! The passes that draw a mirror.
+//! A pass that draws one mirror, and what all passes are made of.
 
 use glam::Vec3;
-use lf_math::{Pinhole, TriangleMesh, near_plane};
+use lf_math::{Pinhole, Placement, Reflectance, TriangleMesh, near_plane};
 
-use crate::cubes::CubeShader;
 use crate::error::GpuError;
 use crate::gpu::Gpu;
+use crate::shader::{Finish, Part, Relief, Shader, shader_source};
 use crate::slab_texture::SlabTexture;
-use crate::storage::Storage;
+use crate::stuv::StuvBuffer;
 use crate::target::Target;
-use crate::uniforms::FrameUniform;
+use crate::uniforms::{FrameUniform, InstanceUniform};
 
 /// A reflective mesh on the device.
 pub struct MirrorMesh {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     index_count: u32,
-    /// The mesh's bounding box, cell space.
+    /// The mesh's bounding box, its own space.
     bounds: (Vec3, Vec3),
 }
 
@@ -25,78 +25,6 @@ pub struct ReflectionPass {
     pipeline: wgpu::RenderPipeline,
     bindings: wgpu::BindGroup,
     frame: wgpu::Buffer,
-}
-
-/// A variant of the slab shader: only what a light field needs is compiled.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SlabShader {
-    pub(crate) storage: Storage,
-    /// Whether several slices share a layer of an array.
-    pub(crate) shared: bool,
-    pub(crate) windows: Windows,
-}
-
-/// What a light field leaves out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Windows {
-    /// Nothing.
-    Whole,
-    /// Texels outside windows.
-    Cropped,
-    /// Single cameras, too.
-    Masked,
-}
-
-impl Windows {
-    #[cfg(test)]
-    pub(crate) const ALL: [Self; 3] = [Self::Whole, Self::Cropped, Self::Masked];
-
-    fn source(self) -> String {
-        let cropped = include_str!("shaders/cropped.wgsl");
-        match self {
-            Self::Whole => include_str!("shaders/whole.wgsl").to_owned(),
-            Self::Cropped => [cropped, include_str!("shaders/unmasked.wgsl")].concat(),
-            Self::Masked => [cropped, include_str!("shaders/masked.wgsl")].concat(),
-        }
-    }
-}
-
-/// What a mirror shows.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Shader {
-    Slabs(SlabShader),
-    Cube(CubeShader),
-    Flat,
-}
-
-impl SlabShader {
-    fn source(self) -> String {
-        let storage = match self.storage {
-            Storage::Bc1Volume => include_str!("shaders/volume.wgsl"),
-            _ if self.shared => include_str!("shaders/shared.wgsl"),
-            Storage::Bc1Array | Storage::Rgba8Array | Storage::Rgba16FArray => include_str!("shaders/array.wgsl"),
-        };
-        let texels = match self.storage {
-            Storage::Rgba16FArray => include_str!("shaders/linear.wgsl"),
-            _ => include_str!("shaders/srgb.wgsl"),
-        };
-        [include_str!("shaders/slabs.wgsl"), storage, &self.windows.source(), texels].concat()
-    }
-}
-
-/// The whole shader.
-pub(crate) fn shader_source(shader: Shader, probe: bool) -> String {
-    let mut source = match shader {
-        Shader::Slabs(slabs) => slabs.source(),
-        Shader::Cube(cube) => cube.source(),
-        Shader::Flat => include_str!("shaders/flat.wgsl").to_owned(),
-    };
-    source += include_str!("shaders/reflect.wgsl");
-    if probe {
-        source += &format!("const PROBES_PER_ROW = {}u;\n", crate::probe::PER_ROW);
-        source += include_str!("shaders/probe.wgsl");
-    }
-    source
 }
 
 /// Sampler of all passes: bilinear, clamped, no mip levels. Bilinear across depth too, where slices are met centrally.
@@ -123,7 +51,7 @@ pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::Buffe
 }
 
 impl MirrorMesh {
-    /// Uploads a mesh given in cell space.
+    /// Uploads a mesh: given in cell space, or placed there by each frame.
     ///
     /// # Errors
     /// If the mesh is too large for the device.
@@ -137,6 +65,18 @@ impl MirrorMesh {
             bounds: mesh.bounds(),
         })
     }
+
+    /// Its bounding box, in its own space.
+    pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
+        self.bounds
+    }
+
+    /// Draws it as the instance of a number.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instance: u32) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.index_count, 0, instance..instance + 1);
+    }
 }
 
 impl ReflectionPass {
@@ -148,7 +88,7 @@ impl ReflectionPass {
         gpu.checked("the slab pipeline", || {
             let sampler = bilinear_sampler(gpu);
             let resources = texture.bindings(&sampler);
-            Self::new(gpu, &shader_source(Shader::Slabs(texture.shader()), false), &resources)
+            Self::new(gpu, Shader::Slabs(texture.shader()), &resources)
         })
     }
 
@@ -157,19 +97,22 @@ impl ReflectionPass {
     /// # Errors
     /// If the device refuses the pipeline.
     pub fn flat(gpu: &Gpu) -> Result<Self, GpuError> {
-        gpu.checked("the white pipeline", || Self::new(gpu, &shader_source(Shader::Flat, false), &[]))
+        gpu.checked("the white pipeline", || Self::new(gpu, Shader::Flat, &[]))
     }
 
-    /// `resources` are the environment's, beside the frame's uniform at binding 0.
-    pub(crate) fn new(gpu: &Gpu, source: &str, resources: &[(u32, wgpu::BindingResource<'_>)]) -> Self {
-        let pipeline = mirror_pipeline(gpu, source);
+    /// `resources` are the environment's, beside the frame's uniform at binding 0 and its instances at 6.
+    pub(crate) fn new(gpu: &Gpu, shader: Shader, resources: &[(u32, wgpu::BindingResource<'_>)]) -> Self {
+        let pipeline = pipeline(gpu, shader, Part::Mirror(Finish::Bare, Relief::Smooth));
         let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
             size: size_of::<FrameUniform>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let all = std::iter::once((0, frame.as_entire_binding())).chain(resources.iter().cloned());
+        let instance = InstanceUniform::new(&Placement::IDENTITY, &Reflectance::MIRROR, 1.0);
+        let instances = buffer(gpu, "instance", bytemuck::bytes_of(&instance), wgpu::BufferUsages::STORAGE);
+        let own = [(0, frame.as_entire_binding()), (6, instances.as_entire_binding())];
+        let all = own.into_iter().chain(resources.iter().cloned());
         let bindings = bind_group(gpu, &pipeline, all);
         Self { pipeline, bindings, frame }
     }
@@ -198,9 +141,7 @@ impl ReflectionPass {
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.bindings, &[]);
-        pass.set_vertex_buffer(0, mesh.vertices.slice(..));
-        pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..mesh.index_count, 0, 0..1);
+        mesh.draw(&mut pass, 0);
     }
 }
 
@@ -210,60 +151,65 @@ pub(crate) fn clear_color(view: &wgpu::TextureView) -> wgpu::RenderPassColorAtta
 }
 
 /// Reversed depth: 0 is infinitely far.
-fn clear_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+pub(crate) fn clear_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
     wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
 }
 
-fn mirror_pipeline(gpu: &Gpu, source: &str) -> wgpu::RenderPipeline {
+/// The pipeline of a part. Bind groups hold what its shader uses and no more.
+pub(crate) fn pipeline(gpu: &Gpu, shader: Shader, part: Part) -> wgpu::RenderPipeline {
+    let source = shader_source(shader, part);
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("shader"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let [vertex, fragment] = part.entries();
     let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
     let vertices = wgpu::VertexBufferLayout {
         array_stride: size_of::<[Vec3; 2]>() as u64,
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes: &attributes,
     };
-    let depth = wgpu::DepthStencilState {
-        format: Target::DEPTH,
-        depth_write_enabled: Some(true),
-        depth_compare: Some(wgpu::CompareFunction::Greater),
-        stencil: wgpu::StencilState::default(),
-        bias: wgpu::DepthBiasState::default(),
-    };
-    pipeline(gpu, source, "mirror", &[Some(vertices)], Some(depth))
-}
-
-/// A pipeline from the entry points `{name}_vertex` and `{name}_fragment` of a shader.
-pub(crate) fn pipeline(
-    gpu: &Gpu,
-    source: &str,
-    name: &str,
-    buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
-    depth_stencil: Option<wgpu::DepthStencilState>,
-) -> wgpu::RenderPipeline {
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(name),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
+    let mesh = [Some(vertices)];
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(name),
+        label: Some(fragment),
         layout: None,
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some(&format!("{name}_vertex")),
+            entry_point: Some(vertex),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers,
+            buffers: if matches!(part, Part::Mirror(..) | Part::StuvMirror(_)) { &mesh } else { &[] },
         },
         primitive: wgpu::PrimitiveState::default(),
-        depth_stencil,
+        depth_stencil: depth_test(part),
         multisample: wgpu::MultisampleState::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some(&format!("{name}_fragment")),
+            entry_point: Some(fragment),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(Target::COLOR.into())],
+            targets: match part {
+                Part::StuvMirror(_) | Part::StuvBackground => &StuvBuffer::TARGETS,
+                _ => &Target::TARGETS,
+            },
         }),
         multiview_mask: None,
         cache: None,
+    })
+}
+
+/// Mirrors hide what is behind them; the background is infinitely far, at depth 0, where nothing was drawn.
+fn depth_test(part: Part) -> Option<wgpu::DepthStencilState> {
+    let compare = match part {
+        Part::Mirror(..) | Part::StuvMirror(_) => wgpu::CompareFunction::Greater,
+        Part::Background(_) | Part::StuvBackground => wgpu::CompareFunction::GreaterEqual,
+        Part::Resolve(_) | Part::Probe => return None,
+    };
+    Some(wgpu::DepthStencilState {
+        format: Target::DEPTH,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(compare),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
     })
 }
 

@@ -5,7 +5,8 @@ use lf_math::Face;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{Shader, bilinear_sampler, bind_group, buffer, clear_color, pipeline, shader_source};
+use crate::pass::{bilinear_sampler, bind_group, buffer, clear_color, pipeline};
+use crate::shader::{Part, Shader};
 use crate::slab_texture::SlabTexture;
 use crate::target::Target;
 use crate::uniforms::ProbeUniform;
@@ -57,7 +58,7 @@ impl Probe {
 }
 
 fn draw(gpu: &Gpu, texture: &SlabTexture, probes: &[Probe], target: &Target) {
-    let pipeline = pipeline(gpu, &shader_source(Shader::Slabs(texture.shader()), true), "probe", &[], None);
+    let pipeline = pipeline(gpu, Shader::Slabs(texture.shader()), Part::Probe);
     let raw = |p: &Probe| ProbeUniform { uv: p.uv, camera: p.camera, face: p.face.index().into(), padding: 0 };
     let raw: Vec<_> = probes.iter().map(raw).collect();
     let list = buffer(gpu, "probes", bytemuck::cast_slice(&raw), wgpu::BufferUsages::STORAGE);

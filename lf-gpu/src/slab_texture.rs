@@ -8,7 +8,8 @@ use lf_math::LightFieldGeometry;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{SlabShader, Windows, buffer};
+use crate::pass::buffer;
+use crate::shader::{SlabShader, Windows};
 use crate::storage::{Plan, Storage};
 use crate::uniforms::SlabsUniform;
 use crate::windows::WindowTable;
@@ -82,6 +83,11 @@ impl SlabTexture {
         Ok(Self { view, uniform, windows, plan, geometry: field.geometry().clone() })
     }
 
+    /// Where slabs.wgsl finds the geometry.
+    pub(crate) fn uniform(&self) -> &wgpu::Buffer {
+        &self.uniform
+    }
+
     /// The resources that slabs.wgsl asks for.
     pub(crate) fn bindings<'a>(&'a self, sampler: &'a wgpu::Sampler) -> Vec<(u32, wgpu::BindingResource<'a>)> {
         let mut all = vec![
@@ -101,7 +107,7 @@ impl SlabTexture {
             Some(table) if table.masked => Windows::Masked,
             Some(_) => Windows::Cropped,
         };
-        SlabShader { storage: self.plan.storage, shared, windows }
+        SlabShader::new(self.plan.storage, shared, windows, &self.geometry)
     }
 
     /// The cell and the slabs.

@@ -1,5 +1,6 @@
 //! Where frames are drawn, and how they come back.
 
+use bytemuck::Pod;
 use lf_math::Image;
 
 use crate::error::GpuError;
@@ -10,13 +11,12 @@ pub struct Target {
     pub(crate) color: wgpu::TextureView,
     pub(crate) depth: wgpu::TextureView,
     texture: wgpu::Texture,
-    width: u32,
-    height: u32,
 }
 
 impl Target {
     /// Format of the colour target.
     pub(crate) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+    pub(crate) const TARGETS: [Option<wgpu::ColorTargetState>; 1] = [Some(plain(Self::COLOR))];
     /// Format of the depth buffer.
     pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -25,24 +25,11 @@ impl Target {
     /// # Errors
     /// If the device cannot make it.
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Result<Self, GpuError> {
-        let make = |format, usage| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("target"),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
-                view_formats: &[],
-            });
-            let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-            (texture, view)
-        };
         gpu.checked("the render target", || {
-            let (texture, color) = make(Self::COLOR, wgpu::TextureUsages::COPY_SRC);
-            let (_, depth) = make(Self::DEPTH, wgpu::TextureUsages::empty());
-            Self { color, depth, texture, width, height }
+            let size = [width, height];
+            let texture = attachment(gpu, size, Self::COLOR, wgpu::TextureUsages::COPY_SRC);
+            let depth = attachment(gpu, size, Self::DEPTH, wgpu::TextureUsages::empty());
+            Self { color: view(&texture), depth: view(&depth), texture }
         })
     }
 
@@ -51,40 +38,74 @@ impl Target {
     /// # Errors
     /// If the device was lost or is out of memory.
     pub fn read(&self, gpu: &Gpu) -> Result<Image<[u8; 4]>, GpuError> {
-        let pitch = (4 * self.width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let refused = |why: String| GpuError::Refused { what: "to give a picture back", why };
-        let buffer = gpu.checked("the read-back buffer", || self.copy_to_buffer(gpu, pitch))?;
-        let (sender, receiver) = std::sync::mpsc::channel();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
-        gpu.wait()?;
-        match receiver.try_recv() {
-            Ok(Ok(())) => {}
-            Ok(Err(e)) => return Err(refused(e.to_string())),
-            Err(e) => return Err(refused(e.to_string())),
-        }
-        let bytes = buffer.get_mapped_range(..).map_err(|e| refused(e.to_string()))?;
-        let rows = bytes.chunks_exact(pitch as usize).map(|row| &row[..4 * self.width as usize]);
-        let texels = rows.flat_map(|row| row.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]])).collect();
-        Image::new(self.width, self.height, texels).map_err(|e| refused(e.to_string()))
+        read_back(gpu, &self.texture)
     }
+}
 
-    fn copy_to_buffer(&self, gpu: &Gpu, pitch: u32) -> wgpu::Buffer {
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read-back"),
-            size: u64::from(pitch) * u64::from(self.height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_texture_to_buffer(
-            self.texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None },
-            },
-            self.texture.size(),
-        );
-        gpu.queue.submit([encoder.finish()]);
-        buffer
+/// A colour target that is overwritten.
+pub(crate) const fn plain(format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState { format, blend: None, write_mask: wgpu::ColorWrites::ALL }
+}
+
+/// A texture to draw into; must run in [`Gpu::checked`].
+pub(crate) fn attachment(
+    gpu: &Gpu,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("target"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+        view_formats: &[],
+    })
+}
+
+pub(crate) fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// A texture's texels, which `T` lays out as its format does; waits for the device.
+pub(crate) fn read_back<T: Pod>(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Image<T>, GpuError> {
+    let row_bytes = size_of::<T>() * texture.width() as usize;
+    let pitch = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+    let refused = |why: String| GpuError::Refused { what: "to give a picture back", why };
+    let buffer = gpu.checked("the read-back buffer", || copy_to_buffer(gpu, texture, pitch))?;
+    let (sender, receiver) = std::sync::mpsc::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
+    gpu.wait()?;
+    match receiver.try_recv() {
+        Ok(Ok(())) => {}
+        Ok(Err(e)) => return Err(refused(e.to_string())),
+        Err(e) => return Err(refused(e.to_string())),
     }
+    let bytes = buffer.get_mapped_range(..).map_err(|e| refused(e.to_string()))?;
+    let rows = bytes.chunks_exact(pitch).map(|row| &row[..row_bytes]);
+    let texels = rows.flat_map(|row| row.chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned)).collect();
+    Image::new(texture.width(), texture.height(), texels).map_err(|e| refused(e.to_string()))
+}
+
+fn copy_to_buffer(gpu: &Gpu, texture: &wgpu::Texture, pitch: usize) -> wgpu::Buffer {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read-back"),
+        size: pitch as u64 * u64::from(texture.height()),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch as u32), rows_per_image: None },
+        },
+        texture.size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+    buffer
 }

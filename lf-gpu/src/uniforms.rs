@@ -4,18 +4,45 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3};
 use lf_compress::PackedLightField;
 use lf_compress::volume::SlabLayout;
-use lf_math::{Pinhole, Slab};
+use lf_math::{Pinhole, Placement, Reflectance, Slab};
 
 use crate::layers::Layers;
 use crate::windows::{NO_MASK, TablePlace, WindowTable};
 
-/// `Frame` of reflect.wgsl.
+/// `Frame` of mirror.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct FrameUniform {
     pub(crate) clip_from_cell: Mat4,
     pub(crate) eye: Vec3,
     pub(crate) padding: f32,
+}
+
+/// `Instance` of mirror.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct InstanceUniform {
+    pub(crate) cell_from_mesh: Mat4,
+    pub(crate) tint: Vec3,
+    pub(crate) f0: f32,
+    pub(crate) repeats: f32,
+    pub(crate) padding_x: f32,
+    pub(crate) padding_y: f32,
+    pub(crate) padding_z: f32,
+}
+
+/// `Sight` of sight.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct SightUniform {
+    pub(crate) eye: Vec3,
+    pub(crate) padding: f32,
+    pub(crate) corner: Vec3,
+    pub(crate) padding_2: f32,
+    pub(crate) right: Vec3,
+    pub(crate) padding_3: f32,
+    pub(crate) down: Vec3,
+    pub(crate) padding_4: f32,
 }
 
 /// `Slab` of slabs.wgsl.
@@ -66,6 +93,20 @@ impl FrameUniform {
     }
 }
 
+impl InstanceUniform {
+    pub(crate) fn new(placement: &Placement, reflectance: &Reflectance, repeats: f32) -> Self {
+        let f0 = reflectance.f0().unwrap_or(1.0);
+        Self { cell_from_mesh: placement.cell_from_mesh(), tint: reflectance.tint(), f0, repeats, ..Self::zeroed() }
+    }
+}
+
+impl SightUniform {
+    pub(crate) fn new(camera: &Pinhole) -> Self {
+        let [corner, right, down] = camera.ray_grid();
+        Self { eye: camera.eye(), corner, right, down, ..Self::zeroed() }
+    }
+}
+
 impl SlabsUniform {
     pub(crate) fn new(field: &PackedLightField, layers: &Layers, table: Option<&WindowTable>) -> Self {
         let mut uniform = Self::zeroed();
@@ -109,8 +150,8 @@ mod tests {
     use std::mem::{offset_of, size_of};
 
     use crate::cubes::{CubeShader, CubeUniform, Depths};
-    use crate::pass::{Shader, SlabShader, Windows, shader_source};
-    use crate::storage::Storage;
+    use crate::shader::{Finish, Part, Relief, Shader, SlabShader, shader_source};
+    use lf_math::View;
 
     /// Offsets of a WGSL struct's members and its size, as naga lays it out.
     fn reflected(module: &wgpu::naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
@@ -128,15 +169,19 @@ mod tests {
         use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
         /// `unpack2x16float`, which only old OpenGL lacks.
         const HALF_FLOATS: Capabilities = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
-        let slabs = Storage::ALL
-            .into_iter()
-            .flat_map(|storage| [false, true].map(|shared| (storage, shared)))
-            .flat_map(|(storage, shared)| Windows::ALL.map(|windows| SlabShader { storage, shared, windows }))
-            .map(Shader::Slabs);
-        for shader in slabs.chain(CubeShader::ALL.map(Shader::Cube)).chain([Shader::Flat]) {
-            for probe in [false, matches!(shader, Shader::Slabs(_))] {
-                let module = parsed(&shader_source(shader, probe));
-                Validator::new(ValidationFlags::all(), HALF_FLOATS).validate(&module).expect("valid");
+        let validate = |shader, part| {
+            let module = parsed(&shader_source(shader, part));
+            Validator::new(ValidationFlags::all(), HALF_FLOATS).validate(&module).expect("valid");
+        };
+        for (slabs, part) in
+            SlabShader::all().into_iter().flat_map(|slabs| Part::all().into_iter().map(move |p| (slabs, p)))
+        {
+            validate(Shader::Slabs(slabs), part);
+        }
+        validate(Shader::Flat, Part::Mirror(Finish::Bare, Relief::Smooth));
+        for cube in CubeShader::ALL {
+            for finish in [Finish::Bare, Finish::Tint, Finish::Fresnel] {
+                validate(Shader::Cube(cube), Part::Mirror(finish, Relief::Smooth));
             }
         }
     }
@@ -150,9 +195,36 @@ mod tests {
 
     #[test]
     fn rust_and_wgsl_agree_on_every_offset() {
-        let slabs = SlabShader { storage: Storage::Bc1Volume, shared: false, windows: Windows::Masked };
-        let module = parsed(&shader_source(Shader::Slabs(slabs), true));
+        let source = |part| shader_source(Shader::Slabs(SlabShader::all()[0]), part);
+        let module = parsed(&source(Part::Mirror(Finish::Fresnel, Relief::Mapped)));
         same_layout!(&module, "Frame", FrameUniform, clip_from_cell, eye, padding);
+        same_layout!(
+            &module,
+            "Instance",
+            InstanceUniform,
+            cell_from_mesh,
+            tint,
+            f0,
+            repeats,
+            padding_x,
+            padding_y,
+            padding_z
+        );
+        let module = parsed(&source(Part::Background(View::Color)));
+        same_layout!(
+            &module,
+            "Sight",
+            SightUniform,
+            eye,
+            padding,
+            corner,
+            padding_2,
+            right,
+            padding_3,
+            down,
+            padding_4
+        );
+        let module = parsed(&source(Part::Probe));
         same_layout!(
             &module,
             "Slab",
@@ -175,21 +247,8 @@ mod tests {
         );
         same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, grid, more_padding, faces);
         same_layout!(&module, "Probe", ProbeUniform, uv, camera, face, padding);
-        let module = parsed(&shader_source(Shader::Cube(CubeShader::March(Depths::Texture)), false));
-        same_layout!(
-            &module,
-            "Cube",
-            CubeUniform,
-            center,
-            radius,
-            low,
-            near,
-            high,
-            far,
-            steps,
-            halvings,
-            depth_size,
-            padding
-        );
+        let module =
+            parsed(&shader_source(Shader::Cube(CubeShader::March(Depths::Texture)), Part::Mirror(Finish::Bare, Relief::Smooth)));
+        same_layout!(&module, "Cube", CubeUniform, center, radius, low, near, high, far, steps, halvings, depth_size, padding);
     }
 }

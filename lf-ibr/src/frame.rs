@@ -1,7 +1,7 @@
 //! One frame of a reflector.
 
 use glam::{Vec3, Vec4};
-use lf_math::{Image, Ray, normalized, reflect};
+use lf_math::{Image, Ray, linear_from_srgb, normalized, reflect};
 use rayon::prelude::*;
 
 use crate::gbuffer::GBuffer;
@@ -11,6 +11,16 @@ pub trait Environment: Sync {
     /// The sRGB-encoded colour, 0 … 1, of the light that comes from where a cell-space ray leads. The direction may have
     /// any length. `None` where the environment holds no answer.
     fn look_up(&self, ray: &Ray) -> Option<Vec3>;
+
+    /// The linear light along the same ray, not clipped where the environment knows better than 0 … 1.
+    fn radiance(&self, ray: &Ray) -> Option<Vec3> {
+        self.look_up(ray).map(decoded)
+    }
+}
+
+/// The linear light of an sRGB-encoded colour.
+pub(crate) fn decoded(color: Vec3) -> Vec3 {
+    Vec3::from(color.to_array().map(linear_from_srgb))
 }
 
 /// Colours the pixels of a G-buffer by what they mirror (Eqs. 2 to 6 of the paper), on all threads.

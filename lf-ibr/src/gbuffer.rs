@@ -3,7 +3,7 @@
 //! Follows the rules of GPU rasterisation: vertices snapped to 1/256 pixel, pixels covered by their centre, ties on
 //! shared edges by the top-left rule, attributes interpolated with perspective, nearest surface kept.
 
-use glam::{Vec3, Vec4};
+use glam::{Mat4, Vec3, Vec4};
 use lf_math::{Image, Pinhole, TriangleMesh, near_plane};
 
 /// Subpixel steps of the snapped coordinates, as Vulkan requires at least 4 bits of and common GPUs have 8 bits of.
@@ -16,6 +16,8 @@ pub struct Fragment {
     pub position: Vec3,
     /// Interpolated normal; its length is at most 1.
     pub normal: Vec3,
+    /// Which mesh it belongs to.
+    pub mesh: u32,
 }
 
 /// The reflector's fragments as seen by a camera.
@@ -36,23 +38,18 @@ impl GBuffer {
     /// Draws a mesh given in cell space. Time grows with the triangles and the pixels they cover.
     #[must_use]
     pub fn rasterize(mesh: &TriangleMesh, camera: &Pinhole) -> Self {
-        let clip_from_cell = camera.clip_from_cell(near_plane(camera.eye(), mesh.bounds()));
-        let vertex = |i: usize| {
-            let fragment = Fragment { position: mesh.positions()[i], normal: mesh.normals()[i] };
-            ClipVertex { clip: clip_from_cell * fragment.position.extend(1.0), fragment }
-        };
-        let vertices: Vec<_> = (0..mesh.positions().len()).map(vertex).collect();
+        Self::rasterize_all(std::slice::from_ref(mesh), camera)
+    }
+
+    /// Draws meshes given in cell space, which hide each other.
+    #[must_use]
+    pub fn rasterize_all(meshes: &[TriangleMesh], camera: &Pinhole) -> Self {
+        let union = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
+        let bounds = meshes.iter().map(TriangleMesh::bounds).reduce(union).unwrap_or_default();
+        let clip_from_cell = camera.clip_from_cell(near_plane(camera.eye(), bounds));
         let mut target = Target::new(camera.width(), camera.height());
-        for triangle in mesh.triangles() {
-            let corners = triangle.map(|i| vertices[i as usize]);
-            if corners.iter().all(|v| v.beyond_near() > 0.0) {
-                target.triangle(&corners);
-            } else {
-                let polygon = clip_near(&corners);
-                for i in 2..polygon.len() {
-                    target.triangle(&[polygon[0], polygon[i - 1], polygon[i]]);
-                }
-            }
+        for (number, mesh) in (0..).zip(meshes) {
+            target.mesh(mesh, number, clip_from_cell);
         }
         Self { eye: camera.eye(), fragments: target.fragments }
     }
@@ -95,6 +92,7 @@ impl ClipVertex {
         let fragment = Fragment {
             position: self.fragment.position.lerp(other.fragment.position, share),
             normal: self.fragment.normal.lerp(other.fragment.normal, share),
+            mesh: self.fragment.mesh,
         };
         Self { clip: self.clip.lerp(other.clip, share), fragment }
     }
@@ -111,6 +109,25 @@ impl Target {
         Self {
             fragments: Image::filled(width, height, None),
             inverse_depths: vec![0.0; width as usize * height as usize],
+        }
+    }
+
+    fn mesh(&mut self, mesh: &TriangleMesh, number: u32, clip_from_cell: Mat4) {
+        let vertex = |i: usize| {
+            let fragment = Fragment { position: mesh.positions()[i], normal: mesh.normals()[i], mesh: number };
+            ClipVertex { clip: clip_from_cell * fragment.position.extend(1.0), fragment }
+        };
+        let vertices: Vec<_> = (0..mesh.positions().len()).map(vertex).collect();
+        for triangle in mesh.triangles() {
+            let corners = triangle.map(|i| vertices[i as usize]);
+            if corners.iter().all(|v| v.beyond_near() > 0.0) {
+                self.triangle(&corners);
+            } else {
+                let polygon = clip_near(&corners);
+                for i in 2..polygon.len() {
+                    self.triangle(&[polygon[0], polygon[i - 1], polygon[i]]);
+                }
+            }
         }
     }
 
@@ -167,8 +184,9 @@ impl Target {
             let [p, q, r] = [0, 1, 2].map(|i| f(&corners[i].fragment));
             (p * a + q * b + r * c) / inverse_depth
         };
+        let mesh = corners[0].fragment.mesh;
         self.fragments.texels_mut()[index] =
-            Some(Fragment { position: blend(&|f| f.position), normal: blend(&|f| f.normal) });
+            Some(Fragment { position: blend(&|f| f.position), normal: blend(&|f| f.normal), mesh });
     }
 }
 

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use glam::{Vec2, Vec3};
-use lf_math::{CameraTap, GeometryError, ImageWindow, LightFieldGeometry, Ray, SlabTexels};
+use lf_math::{CameraTap, GeometryError, ImageWindow, LightFieldGeometry, Ray, SlabTexels, View};
 
 use crate::bilinear::bilinear;
-use crate::frame::Environment;
+use crate::frame::{Environment, decoded};
 use crate::texel::Texel;
 
 /// Slabs with their decoded texels, whole or cropped: 8-bit ones by default, or linear half floats.
@@ -37,13 +37,19 @@ impl<T: Texel> SlabField<T> {
     pub fn geometry(&self) -> &LightFieldGeometry {
         &self.geometry
     }
-}
 
-impl<T: Texel> Environment for SlabField<T> {
+    /// The field as a view of it shows it.
+    #[must_use]
+    pub fn viewed(&self, view: View) -> ViewedSlabs<'_, T> {
+        ViewedSlabs { field: self, view }
+    }
+
+    /// The interpolated texel value of a ray; `None` where no slab or no camera answers.
+    ///
     /// Fig. 8 of the paper: four cameras, a bilinear fetch from each, blended by the ray's place between them. Rays
     /// outside the slab's range or the windows of its images are answered by the nearest samples that there are. Cameras
     /// that are left out are made up for by the others.
-    fn look_up(&self, ray: &Ray) -> Option<Vec3> {
+    fn value(&self, ray: &Ray) -> Option<Vec3> {
         let indexed = self.geometry.index_ray(ray)?;
         let (slab, texels) = (&self.geometry.slabs()[indexed.slab], &self.texels[indexed.slab]);
         let (mut sum, mut found, mut lost) = (Vec3::ZERO, 0.0, 0.0);
@@ -59,7 +65,44 @@ impl<T: Texel> Environment for SlabField<T> {
         if lost > 0.0 {
             sum /= found;
         }
-        (found > 0.0).then(|| T::color(sum))
+        (found > 0.0).then_some(sum)
+    }
+}
+
+impl<T: Texel> Environment for SlabField<T> {
+    fn look_up(&self, ray: &Ray) -> Option<Vec3> {
+        self.value(ray).map(T::color)
+    }
+
+    fn radiance(&self, ray: &Ray) -> Option<Vec3> {
+        self.value(ray).map(T::radiance)
+    }
+}
+
+/// What a [`View`] paints where a ray asks a field.
+#[derive(Debug, Clone, Copy)]
+pub struct ViewedSlabs<'a, T = [u8; 4]> {
+    field: &'a SlabField<T>,
+    view: View,
+}
+
+impl<T: Texel> Environment for ViewedSlabs<'_, T> {
+    fn look_up(&self, ray: &Ray) -> Option<Vec3> {
+        let geometry = &self.field.geometry;
+        let indexed = geometry.index_ray(ray);
+        let slab = indexed.map(|indexed| &geometry.slabs()[indexed.slab]);
+        let color = || self.field.look_up(ray);
+        match self.view {
+            View::Color => color(),
+            View::Slabs => slab.map(|slab| 0.5 * (color().unwrap_or(Vec3::ZERO) + View::face_color(slab.face()))),
+            View::Range if indexed.zip(slab).is_some_and(|(ray, slab)| slab.contains(&ray.coord)) => color(),
+            View::Range => Some(View::OUTSIDE),
+            View::Stuv => indexed.map(|indexed| View::stuv_color(geometry, &indexed)),
+        }
+    }
+
+    fn radiance(&self, ray: &Ray) -> Option<Vec3> {
+        if self.view == View::Color { self.field.radiance(ray) } else { self.look_up(ray).map(decoded) }
     }
 }
 

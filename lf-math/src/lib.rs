@@ -32,12 +32,16 @@ mod image;
 mod mesh;
 mod metrics;
 mod needed;
+mod normal_map;
 mod pinhole;
+mod placement;
 mod ray;
+mod reflectance;
 mod shadow;
 mod slab;
 mod ssim;
 mod texels;
+mod view;
 mod windows;
 
 pub use axis::SampledAxis;
@@ -54,11 +58,15 @@ pub use image::Image;
 pub use mesh::TriangleMesh;
 pub use metrics::{ImageError, VisibleError, image_error, visible_error};
 pub use needed::{NeededImage, NeededTexels};
+pub use normal_map::NormalMap;
 pub use pinhole::{Pinhole, near_plane};
+pub use placement::Placement;
 pub use ray::{Ray, normalized, reflect};
+pub use reflectance::Reflectance;
 pub use slab::{CameraTap, Slab, SlabCoord};
 pub use ssim::ssim;
 pub use texels::{ImageWindow, SlabTexels};
+pub use view::View;
 pub use windows::Windows;
 
 #[cfg(doctest)]

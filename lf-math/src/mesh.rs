@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use crate::error::{GeometryError, finite, positive};
-use crate::normalized;
+use crate::{Placement, normalized};
 
 /// An indexed triangle mesh. Every index is in range, every position finite, every normal of unit length.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,6 +83,16 @@ impl TriangleMesh {
         self.positions.iter().fold(none, |(min, max), &p| (min.min(p), max.max(p)))
     }
 
+    /// The mesh in cell space, given where it stands.
+    ///
+    /// # Errors
+    /// If a position is not finite there.
+    pub fn placed(&self, placement: &Placement) -> Result<Self, GeometryError> {
+        let positions = self.positions.iter().map(|&p| placement.point(p)).collect();
+        let normals = self.normals.iter().map(|&n| placement.direction(n)).collect();
+        Self::new(positions, normals, self.triangles.clone())
+    }
+
     /// The mesh moved and scaled alike along all axes so that its bounding box is centred at `center` and its farthest
     /// vertex lies `radius` from there.
     ///
@@ -130,6 +140,17 @@ mod tests {
         assert!(TriangleMesh::new(positions.clone(), vec![Vec3::X], vec![[0, 1, 2]]).is_err());
         assert!(TriangleMesh::new(positions, vec![], vec![]).is_err());
         assert!(TriangleMesh::new(vec![Vec3::NAN; 3], vec![], vec![[0, 1, 2]]).is_err());
+    }
+
+    #[test]
+    fn placed_meshes_turn_their_normals() {
+        let (positions, triangles) = corner();
+        let mesh = TriangleMesh::new(positions, vec![], triangles).unwrap();
+        let turn = glam::Quat::from_rotation_x(core::f32::consts::FRAC_PI_2);
+        let placed = mesh.placed(&Placement::new(3.0, turn, Vec3::X).unwrap()).unwrap();
+        assert!((placed.normals()[0] - Vec3::NEG_Y).length() < 1e-6);
+        assert!((placed.positions()[2] - Vec3::new(1.0, 0.0, 3.0)).length() < 1e-6);
+        assert!(mesh.placed(&Placement::new(f32::MAX, turn, Vec3::MAX).unwrap()).is_err());
     }
 
     #[test]

@@ -83,6 +83,16 @@ impl Pinhole {
         Ray { origin: self.eye, direction: self.forward + dx * self.right + dy * self.up }
     }
 
+    /// The view rays as a grid: the direction through the picture's upper left corner, and what it changes by for a pixel to the
+    /// right and for one down. The forward component is 1, as of [`Self::ray`].
+    #[must_use]
+    pub fn ray_grid(&self) -> [Vec3; 3] {
+        let scale = 2.0 * self.tan_half_y / self.height as f32;
+        let (right, down) = (scale * self.right, -scale * self.up);
+        let half = |pixels: u32| 0.5 * pixels as f32;
+        [self.forward - half(self.width) * right - half(self.height) * down, right, down]
+    }
+
     /// The matrix from cell space to clip space: x right, y up, depth `near/z` falling from 1 at the near plane to 0 at
     /// infinity ("reversed z"), which spends the precision of floats evenly over the distance.
     #[must_use]
@@ -137,6 +147,9 @@ mod tests {
             let clip = camera.clip_from_cell(0.1) * camera.ray(x, y).at(depth).extend(1.0);
             let pixel_x = (0.5 + 0.5 * clip.x / clip.w) * 64.0;
             let pixel_y = (0.5 - 0.5 * clip.y / clip.w) * 48.0;
+            let [corner, right, down] = camera.ray_grid();
+            let direction = corner + (x as f32 + 0.5) * right + (y as f32 + 0.5) * down;
+            prop_assert!((direction - camera.ray(x, y).direction).length() < 1e-6);
             prop_assert!((pixel_x - (x as f32 + 0.5)).abs() < 1e-3);
             prop_assert!((pixel_y - (y as f32 + 0.5)).abs() < 1e-3);
             prop_assert!((clip.w - depth).abs() < 1e-4 * depth);

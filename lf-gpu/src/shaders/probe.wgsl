@@ -10,13 +10,6 @@ struct Probe {
 
 @group(0) @binding(4) var<storage, read> probes: array<Probe>;
 
-// One triangle that covers the target.
-@vertex
-fn probe_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
-    return vec4f(2.0 * corner - 1.0, 0.0, 1.0);
-}
-
 @fragment
 fn probe_fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     let index = u32(pixel.y) * PROBES_PER_ROW + u32(pixel.x);

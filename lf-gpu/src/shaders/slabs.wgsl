@@ -1,6 +1,6 @@
 // Light field slabs: Figs. 6 and 8 of Yu, Yang & McMillan in one pass. CPU twins: lf-math/src/slab.rs, lf-ibr/src/slabs.rs.
-// `fetch` comes from volume.wgsl, array.wgsl or shared.wgsl, `lines`, `is_kept` and `make_up` from whole.wgsl or cropped.wgsl with
-// unmasked.wgsl or masked.wgsl, `displayed` from srgb.wgsl or linear.wgsl.
+// `face_of` comes from faces.wgsl or one_face.wgsl, `fetch` from volume.wgsl, array.wgsl or shared.wgsl, `lines`, `is_kept` and `make_up`
+// from whole.wgsl or cropped.wgsl with unmasked.wgsl or masked.wgsl, `shifted` from focused.wgsl or unfocused.wgsl.
 
 // One slab; pairs are along (s, t) or (u, v). Mirrors `SlabUniform` in uniforms.rs.
 struct Slab {
@@ -39,6 +39,15 @@ struct Slabs {
     faces: array<Slab, 6>,
 }
 
+// A ray in the real-valued sample indices of the slab that answers it; its face is NO_FACE if there is none.
+struct Indexed {
+    face: u32,
+    st: vec2f,
+    uv: vec2f,
+}
+
+const NO_FACE = 6u;
+
 @group(0) @binding(1) var<uniform> slabs: Slabs;
 @group(0) @binding(2) var bilinear: sampler;
 
@@ -53,30 +62,49 @@ struct Lines {
     weights: vec2f,
 }
 
-fn look_up(origin: vec3f, direction: vec3f) -> vec3f {
-    // The component of largest magnitude, on a tie the first; s and t follow in cyclic order.
+// The axis of the component of largest magnitude; on a tie the first of x, y, z.
+fn dominant_axis(direction: vec3f) -> u32 {
     let size = abs(direction);
-    let is_x = size.x >= size.y && size.x >= size.z;
-    let is_y = !is_x && size.y >= size.z;
-    let d = select(select(direction.zxy, direction.yzx, is_y), direction, is_x);
-    let o = select(select(origin.zxy, origin.yzx, is_y), origin, is_x);
-    let face = select(select(4u, 2u, is_y), 0u, is_x) + select(0u, 1u, d.x < 0.0);
-    let slab = slabs.faces[face];
-    if slab.present == 0u || d.x == 0.0 {
-        return vec3f(0.0);
+    if size.x >= size.y && size.x >= size.z {
+        return 0u;
     }
+    return select(2u, 1u, size.y >= size.z);
+}
+
+// The component along an axis, then those along s and t, in cyclic order.
+fn axis_first(v: vec3f, axis: u32) -> vec3f {
+    return select(select(v.zxy, v.yzx, axis == 1u), v, axis == 0u);
+}
+
+fn index_ray(origin: vec3f, direction: vec3f) -> Indexed {
+    let face = face_of(direction);
+    if face == NO_FACE {
+        return Indexed(NO_FACE, vec2f(0.0), vec2f(0.0));
+    }
+    let d = axis_first(direction, face / 2u);
+    let o = axis_first(origin, face / 2u);
+    let slab = slabs.faces[face];
     // Eqs. 3 and 4: where the ray crosses the camera plane, and its slope.
     let slope = d.yz / abs(d.x);
     let position = o.yz + sign(d.x) * (slab.plane - o.x) * slope;
     // Eq. 1.
-    let st = clamp((position - slab.st_first) / slab.st_step, vec2f(0.0), slab.st_last);
-    let uv = (slope - slab.uv_first) / slab.uv_step;
+    return Indexed(face, (position - slab.st_first) / slab.st_step, (slope - slab.uv_first) / slab.uv_step);
+}
+
+// The light along a ray, as its texels are stored.
+fn answer(ray: Indexed) -> vec3f {
+    if ray.face == NO_FACE {
+        return vec3f(0.0);
+    }
+    let face = ray.face;
+    let slab = slabs.faces[face];
+    let st = clamp(ray.st, vec2f(0.0), slab.st_last);
     // Eq. 5: the four cameras around it; the last is reached with weight 1 from the last but one.
     let first = min(floor(st), max(slab.st_last - 1.0, vec2f(0.0)));
     let second = min(first + 1.0, slab.st_last);
     // Eq. 6, and never past the image's own texels.
-    let first_tap = clamp(uv + slab.disparity * (st - first), vec2f(0.0), slab.uv_last);
-    let second_tap = clamp(uv + slab.disparity * (st - second), vec2f(0.0), slab.uv_last);
+    let first_tap = clamp(shifted(ray, st - first), vec2f(0.0), slab.uv_last);
+    let second_tap = clamp(shifted(ray, st - second), vec2f(0.0), slab.uv_last);
     var columns = lines(face, 0u, vec2f(first.x, second.x), vec2f(first_tap.x, second_tap.x));
     var rows = lines(face, 1u, vec2f(first.y, second.y), vec2f(first_tap.y, second_tap.y));
     let fraction = st - first;
@@ -86,7 +114,11 @@ fn look_up(origin: vec3f, direction: vec3f) -> vec3f {
         + tapped(face, vec2f(second.x, first.y), columns, rows, 1u, 0u)
         + tapped(face, vec2f(first.x, second.y), columns, rows, 0u, 1u)
         + tapped(face, second, columns, rows, 1u, 1u);
-    return displayed(make_up(sum));
+    return make_up(sum);
+}
+
+fn look_up(origin: vec3f, direction: vec3f) -> vec3f {
+    return answer(index_ray(origin, direction));
 }
 
 // The weighted tap of one camera and its weight; 0 if it is not there.

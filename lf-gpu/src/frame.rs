@@ -1,0 +1,229 @@
+//! Whole frames from slabs: any number of reflectors that hide each other, and what is behind them.
+//!
+//! One pass (Figs. 6 and 8 of the paper) or the paper's own two (§7). Each combination of what a reflector, a background and a
+//! light field need is a pipeline of its own, compiled when a frame first asks for it. CPU twin: lf-ibr/src/scene.rs. Reflectors do
+//! not show each other.
+
+use glam::Vec3;
+use lf_math::{Pinhole, Placement, Reflectance, View, near_plane};
+
+use crate::error::GpuError;
+use crate::gpu::Gpu;
+use crate::pass::{MirrorMesh, bilinear_sampler, bind_group, buffer, clear_color, clear_depth, pipeline};
+use crate::relief::NormalMapTexture;
+use crate::shader::{Finish, Part, Relief, Shader};
+use crate::slab_texture::SlabTexture;
+use crate::stuv::StuvBuffer;
+use crate::target::Target;
+use crate::uniforms::{FrameUniform, InstanceUniform, SightUniform};
+
+/// A mirror in a frame.
+#[derive(Clone, Copy)]
+pub struct Reflector<'a> {
+    /// Its mesh.
+    pub mesh: &'a MirrorMesh,
+    /// Where it stands; inside the cell the paper's slabs hold every ray.
+    pub placement: Placement,
+    /// How much it reflects. Only [`View::Color`] heeds it.
+    pub reflectance: Reflectance,
+    /// What bends its normals.
+    pub normal_map: Option<&'a NormalMapTexture>,
+}
+
+/// What to draw.
+#[derive(Clone, Copy)]
+pub struct Frame<'a> {
+    /// Who looks.
+    pub camera: &'a Pinhole,
+    /// What mirrors.
+    pub reflectors: &'a [Reflector<'a>],
+    /// Whether the slabs also show what is behind the reflectors. They hold every view ray if the eye is inside the cell.
+    pub background: bool,
+    /// What is painted.
+    pub view: View,
+}
+
+/// Draws frames from one light field.
+pub struct SlabRenderer<'a> {
+    gpu: &'a Gpu,
+    texture: &'a SlabTexture,
+    sampler: wgpu::Sampler,
+    pipelines: Vec<(Part, wgpu::RenderPipeline)>,
+}
+
+/// What the shaders read, of one frame.
+struct FrameBuffers {
+    frame: wgpu::Buffer,
+    instances: wgpu::Buffer,
+    sight: wgpu::Buffer,
+}
+
+impl<'a> SlabRenderer<'a> {
+    /// A renderer that has compiled nothing yet.
+    ///
+    /// # Errors
+    /// If the device refuses the sampler.
+    pub fn new(gpu: &'a Gpu, texture: &'a SlabTexture) -> Result<Self, GpuError> {
+        let sampler = gpu.checked("a sampler", || bilinear_sampler(gpu))?;
+        Ok(Self { gpu, texture, sampler, pipelines: vec![] })
+    }
+
+    /// Submits one frame in a single pass: clears the target to transparent black, draws the reflectors, then what is behind them.
+    /// The target should have the camera's size. Returns before the frame is finished; see [`Gpu::wait`] and [`Target::read`].
+    ///
+    /// # Errors
+    /// If the device refuses a pipeline or a command.
+    pub fn draw(&mut self, target: &Target, frame: &Frame<'_>) -> Result<(), GpuError> {
+        let mirrors: Vec<Part> =
+            frame.reflectors.iter().map(|mirror| Part::Mirror(mirror.finish(frame.view), mirror.relief())).collect();
+        let behind = frame.background.then_some(Part::Background(frame.view));
+        let colors = [Some(clear_color(&target.color))];
+        self.compile(mirrors.iter().copied().chain(behind))?;
+        self.submit(|renderer, encoder| {
+            renderer.encode(encoder, frame, &colors, &target.depth, &mirrors, behind);
+        })
+    }
+
+    /// Submits one frame in two passes: the first writes what each pixel asks into `stuv`, the second asks it. The picture is that
+    /// of [`Self::draw`]. `stuv` and the target should have the camera's size.
+    ///
+    /// # Errors
+    /// If the device refuses a pipeline or a command, or if a reflector is not a perfect mirror: the buffer does not hold how
+    /// much it reflects.
+    pub fn draw_in_two_passes(
+        &mut self,
+        stuv: &StuvBuffer,
+        target: &Target,
+        frame: &Frame<'_>,
+    ) -> Result<(), GpuError> {
+        if frame.reflectors.iter().any(|mirror| mirror.reflectance != Reflectance::MIRROR) {
+            let why = "only perfect mirrors are drawn so".to_owned();
+            return Err(GpuError::Refused { what: "two passes", why });
+        }
+        let mirrors: Vec<Part> = frame.reflectors.iter().map(|mirror| Part::StuvMirror(mirror.relief())).collect();
+        let behind = frame.background.then_some(Part::StuvBackground);
+        let resolve = Part::Resolve(frame.view);
+        let colors = [Some(clear_color(&stuv.stuv)), Some(clear_color(&stuv.faces))];
+        self.compile(mirrors.iter().copied().chain(behind).chain([resolve]))?;
+        self.submit(|renderer, encoder| {
+            renderer.encode(encoder, frame, &colors, &stuv.depth, &mirrors, behind);
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("second pass"),
+                color_attachments: &[Some(clear_color(&target.color))],
+                ..Default::default()
+            });
+            let asked = [(7, &stuv.stuv), (8, &stuv.faces)];
+            let asked = asked.map(|(number, view)| (number, wgpu::BindingResource::TextureView(view)));
+            renderer.bind(&mut pass, resolve, &asked);
+            pass.draw(0..3, 0..1);
+        })
+    }
+
+    /// Compiles what is not compiled yet.
+    fn compile(&mut self, parts: impl IntoIterator<Item = Part>) -> Result<(), GpuError> {
+        for part in parts {
+            if self.pipelines.iter().all(|(compiled, _)| *compiled != part) {
+                let shader = Shader::Slabs(self.texture.shader());
+                let made = self.gpu.checked("a pipeline", || pipeline(self.gpu, shader, part))?;
+                self.pipelines.push((part, made));
+            }
+        }
+        Ok(())
+    }
+
+    fn submit(&self, encode: impl FnOnce(&Self, &mut wgpu::CommandEncoder)) -> Result<(), GpuError> {
+        self.gpu.checked("a frame", || {
+            let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            encode(self, &mut encoder);
+            self.gpu.queue.submit([encoder.finish()]);
+        })
+    }
+
+    /// Draws each reflector by its part, then what is behind.
+    fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &Frame<'_>,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        depth: &wgpu::TextureView,
+        mirrors: &[Part],
+        behind: Option<Part>,
+    ) {
+        let buffers = FrameBuffers::new(self.gpu, frame);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("frame"),
+            color_attachments: colors,
+            depth_stencil_attachment: Some(clear_depth(depth)),
+            ..Default::default()
+        });
+        for (number, (reflector, &part)) in (0..).zip(frame.reflectors.iter().zip(mirrors)) {
+            let mut inputs = vec![(0, buffers.frame.as_entire_binding()), (6, buffers.instances.as_entire_binding())];
+            inputs.extend(reflector.normal_map.map(NormalMapTexture::binding));
+            self.bind(&mut pass, part, &inputs);
+            reflector.mesh.draw(&mut pass, number);
+        }
+        if let Some(part) = behind {
+            self.bind(&mut pass, part, &[(7, buffers.sight.as_entire_binding())]);
+            pass.draw(0..3, 0..1);
+        }
+    }
+
+    /// Sets a compiled part's pipeline, with the light field and `inputs` of its own.
+    fn bind(&self, pass: &mut wgpu::RenderPass<'_>, part: Part, inputs: &[(u32, wgpu::BindingResource<'_>)]) {
+        let Some((_, pipeline)) = self.pipelines.iter().find(|(compiled, _)| *compiled == part) else { return };
+        let field = if part.fetches() {
+            self.texture.bindings(&self.sampler)
+        } else {
+            vec![(1, self.texture.uniform().as_entire_binding())]
+        };
+        let bindings = bind_group(self.gpu, pipeline, field.into_iter().chain(inputs.iter().cloned()));
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &bindings, &[]);
+    }
+}
+
+impl Reflector<'_> {
+    fn finish(&self, view: View) -> Finish {
+        match view {
+            View::Color if self.reflectance == Reflectance::MIRROR => Finish::Bare,
+            View::Color if self.reflectance.f0().is_some() => Finish::Fresnel,
+            View::Color => Finish::Tint,
+            view => Finish::Viewed(view),
+        }
+    }
+
+    fn relief(&self) -> Relief {
+        if self.normal_map.is_some() { Relief::Mapped } else { Relief::Smooth }
+    }
+
+    fn instance(&self) -> InstanceUniform {
+        let repeats = self.normal_map.map_or(1.0, NormalMapTexture::repeats);
+        InstanceUniform::new(&self.placement, &self.reflectance, repeats)
+    }
+}
+
+impl FrameBuffers {
+    fn new(gpu: &Gpu, frame: &Frame<'_>) -> Self {
+        let uniform = |label, bytes: &[u8]| buffer(gpu, label, bytes, wgpu::BufferUsages::UNIFORM);
+        let mut instances: Vec<_> = frame.reflectors.iter().map(Reflector::instance).collect();
+        if instances.is_empty() {
+            // A buffer must not be empty.
+            instances.push(InstanceUniform::new(&Placement::IDENTITY, &Reflectance::MIRROR, 1.0));
+        }
+        let near = near_plane(frame.camera.eye(), frame.bounds());
+        Self {
+            frame: uniform("frame", bytemuck::bytes_of(&FrameUniform::new(frame.camera, near))),
+            sight: uniform("sight", bytemuck::bytes_of(&SightUniform::new(frame.camera))),
+            instances: buffer(gpu, "instances", bytemuck::cast_slice(&instances), wgpu::BufferUsages::STORAGE),
+        }
+    }
+}
+
+impl Frame<'_> {
+    /// The smallest box around all reflectors' boxes, cell space.
+    fn bounds(&self) -> (Vec3, Vec3) {
+        let boxes = self.reflectors.iter().map(|mirror| mirror.placement.bounds(mirror.mesh.bounds()));
+        let union = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
+        boxes.reduce(union).unwrap_or((Vec3::ZERO, Vec3::ZERO))
+    }
+}

@@ -1,0 +1,261 @@
+//! Whole frames from slabs on the GPU and the CPU: views, two passes, several tinted reflectors, backgrounds.
+
+use glam::{Quat, Vec3};
+use half::f16;
+use lf_compress::PackedLightField;
+use lf_gpu::{Frame, Gpu, MirrorMesh, NormalMapTexture, SlabRenderer, SlabTexture, StuvBuffer, Target};
+use lf_ibr::{SlabField, Texel, draw_frame};
+use lf_math::{
+    Image, LightFieldGeometry, NormalMap, Pinhole, Placement, Reflectance, SampledAxis, Slab, SlabTexels, TriangleMesh,
+    View, linear_from_srgb,
+};
+use lf_scene::{Capture, reflectors};
+use lf_tests::{capture, gpu, museum, packed};
+
+const SIZE: u32 = 384;
+
+/// A mesh of ours, where it stands, what it reflects.
+#[derive(Clone)]
+struct Mirror {
+    mesh: TriangleMesh,
+    placement: Placement,
+    reflectance: Reflectance,
+    normal_map: Option<NormalMap>,
+}
+
+/// Three mirrors that hide parts of each other: a plain one, one of gold, one of hammered glass.
+fn mirrors() -> Vec<Mirror> {
+    let place = |scale, turn: f32, at| Placement::new(scale, Quat::from_rotation_y(turn), at).expect("a placement");
+    let gold = Reflectance::new(Vec3::new(1.0, 0.77, 0.34), None).expect("shares");
+    let glass = Reflectance::new(Vec3::ONE, Some(0.04)).expect("shares");
+    let (ball, pot) = (reflectors::sphere(5), reflectors::teapot(10).fitted(Vec3::ZERO, 1.0).expect("fits"));
+    let mirror = |mesh: &TriangleMesh, placement, reflectance, normal_map| Mirror {
+        mesh: mesh.clone(),
+        placement,
+        reflectance,
+        normal_map,
+    };
+    vec![
+        mirror(&ball, place(0.2, 0.0, Vec3::new(0.2, 0.1, 0.0)), Reflectance::MIRROR, None),
+        mirror(&pot, place(0.25, 2.0, Vec3::new(-0.15, -0.1, 0.1)), gold, None),
+        mirror(&ball, place(0.15, 0.7, Vec3::new(0.1, -0.15, 0.25)), glass, Some(waves())),
+    ]
+}
+
+/// Waves of a 16th of a metre in the mesh's own space, up to 11° steep.
+fn waves() -> NormalMap {
+    let texel = |i: u32| {
+        let phase = |n: u32| (std::f32::consts::TAU * (n as f32 + 0.5) / 32.0).cos();
+        let normal = Vec3::new(0.2 * phase(i % 32), 0.2 * phase(i / 32), 1.0).normalize();
+        let [x, y, z] = normal.to_array().map(|c| ((0.5 * c + 0.5) * 255.0).round() as u8);
+        [x, y, z, 255]
+    };
+    NormalMap::new(Image::new(32, 32, (0..32 * 32).map(texel).collect()).expect("a picture"), 2.0).expect("a map")
+}
+
+fn bare(mirrors: &[Mirror]) -> Vec<Mirror> {
+    mirrors.iter().map(|mirror| Mirror { reflectance: Reflectance::MIRROR, ..mirror.clone() }).collect()
+}
+
+/// One eye outside, one inside the cell.
+fn cameras() -> [Pinhole; 2] {
+    let look = |eye, fov| Pinhole::look_at(eye, Vec3::ZERO, fov, SIZE, SIZE).expect("a camera");
+    [look(Vec3::new(0.9, 0.5, 1.0), 0.7), look(Vec3::new(0.45, 0.3, 0.48), 1.4)]
+}
+
+/// Meshes and normal maps on the device.
+fn uploaded(gpu: &Gpu, mirrors: &[Mirror]) -> Vec<(MirrorMesh, Option<NormalMapTexture>)> {
+    let upload = |mirror: &Mirror| {
+        let map = mirror.normal_map.as_ref().map(|map| NormalMapTexture::new(gpu, map).expect("uploads"));
+        (MirrorMesh::new(gpu, &mirror.mesh).expect("uploads"), map)
+    };
+    mirrors.iter().map(upload).collect()
+}
+
+fn placed<'a>(
+    uploaded: &'a [(MirrorMesh, Option<NormalMapTexture>)],
+    mirrors: &[Mirror],
+) -> Vec<lf_gpu::Reflector<'a>> {
+    let reflector = |((mesh, map), mirror): (&'a (MirrorMesh, Option<NormalMapTexture>), &Mirror)| lf_gpu::Reflector {
+        mesh,
+        placement: mirror.placement,
+        reflectance: mirror.reflectance,
+        normal_map: map.as_ref(),
+    };
+    uploaded.iter().zip(mirrors).map(reflector).collect()
+}
+
+/// The CPU's picture.
+fn expected<T: Texel>(
+    field: &SlabField<T>,
+    mirrors: &[Mirror],
+    background: bool,
+    view: View,
+    camera: &Pinhole,
+) -> Image<[u8; 4]> {
+    let mut reflectors = vec![];
+    for Mirror { mesh, placement, reflectance, normal_map } in mirrors {
+        let (placement, reflectance, normal_map) = (*placement, *reflectance, normal_map.as_ref());
+        reflectors.push(lf_ibr::Reflector { mesh, placement, reflectance, normal_map });
+    }
+    draw_frame(&reflectors, background, &field.viewed(view), camera).expect("draws")
+}
+
+/// Differences of a channel over the pixels that both cover.
+struct Differences {
+    max: u8,
+    p999: u8,
+    p99: u8,
+}
+
+/// Measures and prints them.
+fn differences(what: &str, a: &Image<[u8; 4]>, b: &Image<[u8; 4]>) -> Differences {
+    let both = a.texels().iter().zip(b.texels()).filter(|(a, b)| a[3] != 0 && b[3] != 0);
+    let mut all: Vec<u8> = both.map(|(a, b)| (0..3).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0)).collect();
+    let outline = a.texels().iter().zip(b.texels()).filter(|(a, b)| a[3] != b[3]).count();
+    all.sort_unstable();
+    let at = |share: f64| all[((all.len() - 1) as f64 * share) as usize];
+    let found = Differences { max: at(1.0), p999: at(0.999), p99: at(0.99) };
+    let Differences { max, p999, p99 } = found;
+    println!("{what}: {} pixels, max {max}/255, p99.9 {p999}/255, p99 {p99}/255, {outline} on the outline", all.len());
+    assert!(all.len() > 10_000 && outline <= 40, "{what}");
+    found
+}
+
+/// Draws on the GPU in every view, from both eyes, with and without background, and compares.
+fn compare<T: Texel>(what: &str, field: &PackedLightField, twin: &SlabField<T>, mirrors: &[Mirror]) {
+    let gpu = gpu();
+    let texture = SlabTexture::new(&gpu, field).expect("uploads");
+    let mut renderer = SlabRenderer::new(&gpu, &texture).expect("a renderer");
+    let target = Target::new(&gpu, SIZE, SIZE).expect("a target");
+    let meshes = uploaded(&gpu, mirrors);
+    let reflectors = placed(&meshes, mirrors);
+    for (eye, camera) in cameras().iter().enumerate() {
+        for (view, background) in View::ALL.into_iter().flat_map(|view| [(view, false), (view, true)]) {
+            let frame = Frame { camera, reflectors: &reflectors, background, view };
+            renderer.draw(&target, &frame).expect("draws");
+            // Views do not heed reflectances.
+            let shown = if view == View::Color { mirrors.to_vec() } else { bare(mirrors) };
+            let twin = expected(twin, &shown, background, view, camera);
+            let label = format!("{what}, {view:?}, eye {eye}, background {background}");
+            let found = differences(&label, &target.read(&gpu).expect("reads"), &twin);
+            // What is left lies on creases of the teapot, where neighbouring rays part, and where slabs meet.
+            assert!(found.p99 <= 1 && found.p999 <= 3, "{label}");
+        }
+    }
+}
+
+fn twin(field: &PackedLightField) -> SlabField {
+    SlabField::new(field.geometry().clone(), field.decode(1 << 30).expect("decodes")).expect("a field")
+}
+
+/// The museum's slabs, with focal planes.
+fn focused() -> Capture {
+    let mut capture = capture(&museum(), 10, 48);
+    let slabs = capture.geometry.slabs().iter().map(|slab| slab.with_focal_depth(Some(3.0)).expect("a slab")).collect();
+    capture.geometry = LightFieldGeometry::new(*capture.geometry.cell(), slabs).expect("slabs");
+    capture
+}
+
+#[test]
+fn frames_of_several_mirrors_agree_in_all_views() {
+    let field = packed(&focused());
+    compare("six slabs", &field, &twin(&field), &mirrors());
+}
+
+#[test]
+fn frames_from_one_slab_agree_in_all_views() {
+    let capture = capture(&museum(), 10, 48);
+    let one = vec![capture.geometry.slabs()[5]];
+    let geometry = LightFieldGeometry::new(*capture.geometry.cell(), one).expect("a slab");
+    let field = packed(&Capture { geometry, texels: vec![capture.texels[5].clone()], ..capture });
+    compare("one slab", &field, &twin(&field), &mirrors());
+}
+
+/// Light brighter than can be shown is tinted before it is clipped.
+#[test]
+fn frames_from_linear_slabs_agree_in_all_views() {
+    let capture = capture(&museum(), 10, 48);
+    let linear = |(slab, texels): (&Slab, &SlabTexels)| {
+        let value = |byte: u8| f16::from_f32(3.0 * linear_from_srgb(f32::from(byte) / 255.0));
+        let texel = |texel: &[u8; 4]| [value(texel[0]), value(texel[1]), value(texel[2])];
+        SlabTexels::new(slab, texels.texels().iter().map(texel).collect()).expect("texels")
+    };
+    let texels: Vec<_> = capture.geometry.slabs().iter().zip(&capture.texels).map(linear).collect();
+    let field = PackedLightField::encode_linear(capture.geometry.clone(), &texels).expect("encodes");
+    let twin = SlabField::new(capture.geometry, texels).expect("a field");
+    compare("linear slabs", &field, &twin, &mirrors());
+}
+
+/// The paper's own form: the same picture, and the buffer holds what `lf-math` says.
+#[test]
+fn two_passes_draw_what_one_does() {
+    let (gpu, field) = (gpu(), packed(&focused()));
+    let texture = SlabTexture::new(&gpu, &field).expect("uploads");
+    let mut renderer = SlabRenderer::new(&gpu, &texture).expect("a renderer");
+    let (target, stuv) =
+        (Target::new(&gpu, SIZE, SIZE).expect("a target"), StuvBuffer::new(&gpu, SIZE, SIZE).expect("a buffer"));
+    let mirrors = bare(&mirrors());
+    let meshes = uploaded(&gpu, &mirrors);
+    let reflectors = placed(&meshes, &mirrors);
+    for camera in &cameras() {
+        for view in View::ALL {
+            let frame = Frame { camera, reflectors: &reflectors, background: true, view };
+            renderer.draw(&target, &frame).expect("draws");
+            let one = target.read(&gpu).expect("reads");
+            renderer.draw_in_two_passes(&stuv, &target, &frame).expect("draws");
+            let found = differences(&format!("two passes, {view:?}"), &one, &target.read(&gpu).expect("reads"));
+            assert!(found.max <= 1, "{view:?}");
+        }
+    }
+    // Pixels of the background, by the view ray alone; the last camera is the one whose eye is inside.
+    let camera = cameras()[1];
+    let frame = Frame { camera: &camera, reflectors: &[], background: true, view: View::Color };
+    renderer.draw_in_two_passes(&stuv, &target, &frame).expect("draws");
+    let asked = stuv.read(&gpu).expect("reads");
+    for (x, y) in (0..SIZE).step_by(7).flat_map(|y| (0..SIZE).step_by(5).map(move |x| (x, y))) {
+        let indexed = field.geometry().index_ray(&camera.ray(x, y)).expect("six slabs");
+        let coord = indexed.coord.st.extend(indexed.coord.uv.x).extend(indexed.coord.uv.y).to_array();
+        // Where two faces meet either may answer.
+        let near = |found: [f32; 4]| found.iter().zip(coord).all(|(a, b)| (a - b).abs() < 2e-4 * 48.0);
+        let d = camera.ray(x, y).direction.abs().to_array();
+        let largest = d.into_iter().fold(0.0, f32::max);
+        let tie = d.iter().filter(|c| **c > 0.9999 * largest).count() > 1;
+        assert!(near(asked.get(x, y)) || tie, "{x} {y}: {:?} {coord:?}", asked.get(x, y));
+    }
+    let tinted = [lf_gpu::Reflector { reflectance: Reflectance::new(Vec3::X, None).expect("shares"), ..reflectors[0] }];
+    let frame = Frame { reflectors: &tinted, ..frame };
+    assert!(renderer.draw_in_two_passes(&stuv, &target, &frame).is_err());
+}
+
+/// The paper's slabs hold every ray of a mirror inside the cell, from any eye; shrunken ones do not, and say so.
+#[test]
+fn rays_outside_the_slabs_are_painted() {
+    let gpu = gpu();
+    let painted = |capture: &Capture| {
+        let texture_of = packed(capture);
+        let texture = SlabTexture::new(&gpu, &texture_of).expect("uploads");
+        let mut renderer = SlabRenderer::new(&gpu, &texture).expect("a renderer");
+        let target = Target::new(&gpu, SIZE, SIZE).expect("a target");
+        let mirrors = mirrors();
+        let meshes = uploaded(&gpu, &mirrors);
+        let frame = Frame {
+            camera: &cameras()[0],
+            reflectors: &placed(&meshes, &mirrors),
+            background: false,
+            view: View::Range,
+        };
+        renderer.draw(&target, &frame).expect("draws");
+        target.read(&gpu).expect("reads").texels().iter().filter(|texel| **texel == [255, 0, 255, 255]).count()
+    };
+    let paper = capture(&museum(), 10, 48);
+    assert_eq!(painted(&paper), 0);
+    let shrunken = |slab: &Slab| {
+        let half = paper.geometry.cell().half_extent().x;
+        let st = SampledAxis::spanning(-half, half, 10).expect("an axis");
+        Slab::new(slab.face(), slab.plane(), [st, st], slab.uv(), None).expect("a slab")
+    };
+    let slabs = paper.geometry.slabs().iter().map(shrunken).collect();
+    let geometry = LightFieldGeometry::new(*paper.geometry.cell(), slabs).expect("slabs");
+    assert!(painted(&Capture { geometry, ..paper }) > 1000);
+}
