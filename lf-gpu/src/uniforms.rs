@@ -247,8 +247,24 @@ mod tests {
         );
         same_layout!(&module, "Slabs", SlabsUniform, texel_scale, padding, grid, more_padding, faces);
         same_layout!(&module, "Probe", ProbeUniform, uv, camera, face, padding);
-        let module =
-            parsed(&shader_source(Shader::Cube(CubeShader::March(Depths::Texture)), Part::Mirror(Finish::Bare, Relief::Smooth)));
-        same_layout!(&module, "Cube", CubeUniform, center, radius, low, near, high, far, steps, halvings, depth_size, padding);
+        let module = parsed(&shader_source(
+            Shader::Cube(CubeShader::March(Depths::Texture)),
+            Part::Mirror(Finish::Bare, Relief::Smooth),
+        ));
+        same_layout!(
+            &module,
+            "Cube",
+            CubeUniform,
+            center,
+            radius,
+            low,
+            near,
+            high,
+            far,
+            steps,
+            halvings,
+            depth_size,
+            padding
+        );
     }
 }
