@@ -1,27 +1,34 @@
-//! Lookups per second: slabs of the paper's set-up against an environment map, along coherent and incoherent rays.
+//! Lookups per second on one core: slabs of the paper's set-up from BC1 blocks and from decoded texels, against an environment map.
 
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DVec3, Vec3};
-use lf_ibr::{CubeField, Environment, SlabField};
-use lf_math::{Cell, CubeMap, Image, LightFieldGeometry, PlanePlacement, Ray, SlabTexels};
+use lf_compress::{PackedLightField, bc1::Quality, format::TexelEncoding};
+use lf_ibr::{BlockField, CubeField, Environment, SlabField};
+use lf_math::{Cell, CubeMap, Image, LightFieldGeometry, PlanePlacement, Ray, SlabTexels, reflect};
 
-const RAYS: usize = 1 << 16;
+const EDGE: usize = 512;
+const TEXELS: usize = 32 * 32 * 128 * 128;
+
+fn hash(i: usize) -> u32 {
+    let mixed = (i as u32 ^ 0x9E37_79B9).wrapping_mul(0x85EB_CA6B);
+    let mixed = (mixed ^ mixed >> 15).wrapping_mul(0xC2B2_AE35);
+    mixed ^ mixed >> 13
+}
 
 /// A texel value that differs from its neighbours.
 fn noise(i: usize) -> [u8; 4] {
-    let hash = (i as u32).wrapping_mul(2_654_435_761).rotate_left(13).wrapping_mul(2_246_822_519);
-    let [r, g, b, _] = hash.to_le_bytes();
+    let [r, g, b, _] = hash(i).to_le_bytes();
     [r, g, b, 255]
 }
 
-fn slabs() -> SlabField {
+fn packed() -> PackedLightField {
     let cell = Cell::cube(DVec3::ZERO, 1.0).expect("a cell");
     let geometry = LightFieldGeometry::around(cell, PlanePlacement::CellFaces, 32, 128).expect("slabs");
-    let texels = |slab| SlabTexels::new(slab, (0..32 * 32 * 128 * 128).map(noise).collect()).expect("texels");
-    let texels = geometry.slabs().iter().map(texels).collect();
-    SlabField::new(geometry, texels).expect("a field")
+    let texels = |slab| SlabTexels::new(slab, (0..TEXELS).map(noise).collect()).expect("texels");
+    let texels: Vec<_> = geometry.slabs().iter().map(texels).collect();
+    PackedLightField::encode(geometry, &texels, TexelEncoding::Bc1, Quality::Realtime).expect("blocks")
 }
 
 fn cube() -> CubeField {
@@ -29,29 +36,53 @@ fn cube() -> CubeField {
     CubeField::new(&CubeMap::new([0; 6].map(face)).expect("a cube"))
 }
 
-/// Rays off a mirror sphere in the order of an image's pixels, or shuffled.
-fn rays(coherent: bool) -> Vec<Ray> {
+/// Rays off a mirror sphere, in the order of a picture's pixels.
+fn sphere() -> Vec<Ray> {
     let ray = |i: usize| {
-        let i = if coherent { i } else { i.wrapping_mul(40_503) % RAYS };
-        let (x, y) = ((i % 256) as f32 / 128.0 - 1.0, (i / 256) as f32 / 128.0 - 1.0);
-        let normal = Vec3::new(x, y, 0.7).normalize();
-        Ray { origin: 0.4 * normal, direction: lf_math::reflect(Vec3::NEG_Z, normal) }
+        let [x, y] = [i % EDGE, i / EDGE].map(|p| (2 * p + 1) as f32 / EDGE as f32 - 1.0);
+        let z = 1.0 - x * x - y * y;
+        (z > 0.0).then(|| Vec3::new(x, y, z.sqrt()))
     };
-    (0..RAYS).map(ray).collect()
+    let mirrored = |normal: Vec3| Ray { origin: 0.4 * normal, direction: reflect(Vec3::NEG_Z, normal) };
+    (0..EDGE * EDGE).filter_map(ray).map(mirrored).collect()
+}
+
+/// The same in no order (Fisher & Yates).
+fn shuffled(mut rays: Vec<Ray>) -> Vec<Ray> {
+    for i in (1..rays.len()).rev() {
+        rays.swap(i, hash(i) as usize % (i + 1));
+    }
+    rays
+}
+
+/// From anywhere in the cell to anywhere.
+fn random(len: usize) -> Vec<Ray> {
+    let number = |i: usize| hash(i) as f32 / 2f32.powi(32) - 0.5;
+    let vector = |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
+    (0..len).map(|i| Ray { origin: vector(2 * i), direction: vector(2 * i + 1) }).collect()
 }
 
 fn bench(c: &mut Criterion) {
+    let packed = packed();
+    let (blocks, cube) = (BlockField::new(&packed).expect("a field"), cube());
+    let texels = packed.decode(1 << 30).expect("texels");
+    let slabs = SlabField::new(packed.geometry().clone(), texels).expect("a field");
+    let coherent = sphere();
+    let orders = [("shuffled", shuffled(coherent.clone())), ("random", random(coherent.len())), ("coherent", coherent)];
     let mut group = c.benchmark_group("fetch");
-    group.throughput(Throughput::Elements(RAYS as u64));
-    let (slabs, cube) = (slabs(), cube());
-    for (order, rays) in [("coherent", rays(true)), ("incoherent", rays(false))] {
+    group.sample_size(20);
+    for (order, rays) in &orders {
+        group.throughput(Throughput::Elements(rays.len() as u64));
         let mut run = |name: &str, environment: &dyn Environment| {
-            assert!(rays.iter().all(|ray| environment.look_up(ray).is_some()), "every ray has an answer");
-            group.bench_with_input(BenchmarkId::new(name, order), &rays, |b, rays| {
-                b.iter(|| rays.iter().filter_map(|ray| environment.look_up(black_box(ray))).sum::<Vec3>());
+            let mut answers = vec![None; rays.len()];
+            environment.look_up_all(rays, &mut answers);
+            assert!(answers.iter().all(Option::is_some), "every ray has an answer");
+            group.bench_function(BenchmarkId::new(name, order), |b| {
+                b.iter(|| environment.look_up_all(black_box(rays), black_box(&mut answers)));
             });
         };
-        run("slabs 32x32x128x128", &slabs);
+        run("slabs BC1", &blocks);
+        run("slabs RGBA8", &slabs);
         run("environment map 512", &cube);
     }
     group.finish();

@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 use lf_math::{Image, Ray, linear_from_srgb, normalized, reflect};
 use rayon::prelude::*;
 
-use crate::gbuffer::GBuffer;
+use crate::gbuffer::{Fragment, GBuffer};
 
 /// Something that knows the light arriving along a ray.
 pub trait Environment: Sync {
@@ -15,6 +15,13 @@ pub trait Environment: Sync {
     /// The linear light along the same ray, not clipped where the environment knows better than 0 … 1.
     fn radiance(&self, ray: &Ray) -> Option<Vec3> {
         self.look_up(ray).map(decoded)
+    }
+
+    /// Answers many rays at once, which some environments do faster: of the shorter slice's length.
+    fn look_up_all(&self, rays: &[Ray], answers: &mut [Option<Vec3>]) {
+        for (ray, answer) in rays.iter().zip(answers) {
+            *answer = self.look_up(ray);
+        }
     }
 }
 
@@ -31,13 +38,30 @@ pub(crate) fn decoded(color: Vec3) -> Vec3 {
 pub fn reflect_frame(gbuffer: &GBuffer, environment: &(impl Environment + ?Sized)) -> Image<[u8; 4]> {
     let eye = gbuffer.eye();
     let mut image = Image::filled(gbuffer.fragments().width(), gbuffer.fragments().height(), [0; 4]);
-    image.texels_mut().par_iter_mut().zip(gbuffer.fragments().texels()).for_each(|(pixel, fragment)| {
-        let Some(fragment) = fragment else { return };
-        let normal = normalized(fragment.normal).unwrap_or(Vec3::Y);
-        let ray = Ray { origin: fragment.position, direction: reflect(fragment.position - eye, normal) };
-        *pixel = encode(environment.look_up(&ray).unwrap_or(Vec3::ZERO).extend(1.0));
-    });
+    let width = gbuffer.fragments().width() as usize;
+    let rows = image.texels_mut().par_chunks_mut(width).zip(gbuffer.fragments().texels().par_chunks(width));
+    rows.for_each(|(pixels, fragments)| reflect_row(eye, fragments, environment, pixels));
     image
+}
+
+/// The pixels of a row where the reflector is.
+fn reflect_row(
+    eye: Vec3,
+    fragments: &[Option<Fragment>],
+    environment: &(impl Environment + ?Sized),
+    pixels: &mut [[u8; 4]],
+) {
+    let mirrored = |fragment: &Fragment| {
+        let normal = normalized(fragment.normal).unwrap_or(Vec3::Y);
+        Ray { origin: fragment.position, direction: reflect(fragment.position - eye, normal) }
+    };
+    let rays: Vec<Ray> = fragments.iter().flatten().map(mirrored).collect();
+    let mut answers = vec![None; rays.len()];
+    environment.look_up_all(&rays, &mut answers);
+    let covered = pixels.iter_mut().zip(fragments).filter(|(_, fragment)| fragment.is_some());
+    for ((pixel, _), answer) in covered.zip(answers) {
+        *pixel = encode(answer.unwrap_or(Vec3::ZERO).extend(1.0));
+    }
 }
 
 /// 8-bit values rounded to nearest, as a GPU writes an 8-bit target.

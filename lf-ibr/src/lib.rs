@@ -5,6 +5,7 @@
 //! [`Environment`] for the light along it:
 //!
 //! * [`SlabField`]: light field slabs, four bilinear fetches blended (Figs. 6 and 8 of the paper);
+//! * [`BlockField`]: the same straight from BC1 blocks, many rays at a time;
 //! * [`CubeField`]: an environment map, looked up by direction alone;
 //! * [`SphereCube`], [`BoxCube`]: the same on a sphere or a box that stands for the scene;
 //! * [`DistanceField`]: a cube that knows how far everything is; [`ProbeField`]: several of them;
@@ -21,6 +22,7 @@
 #![forbid(unsafe_code)]
 
 mod bilinear;
+mod blocks;
 mod cube;
 mod distance;
 mod focus;
@@ -37,6 +39,7 @@ mod surface;
 mod texel;
 mod views;
 
+pub use blocks::BlockField;
 pub use cube::CubeField;
 pub use distance::{DistanceField, ProbeField};
 pub use focus::{ImageFocus, PlaneError, focus_from_images};
