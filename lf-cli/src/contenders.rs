@@ -13,14 +13,14 @@ use lf_compress::bc1::Quality;
 use lf_compress::{PackOptions, PackedCube, PackedLightField};
 use lf_gpu::{CubePicture, Gpu, GpuError, Proxy, ReflectionPass, SlabTexture, Storage};
 use lf_ibr::{
-    BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, SlabField, SphereCube,
+    BlockField, BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, SphereCube,
 };
 use lf_math::{Coverage, DistanceCube, LightFieldGeometry, PlanePlacement, Search};
 use lf_scene::{capture_distance_cube, capture_inverse_depths, focus};
 
 use crate::args::{FileArgs, Preset};
 use crate::capture::{Captured, capture_to};
-use crate::input::{MAX_DECODED_BYTES, load};
+use crate::input::load;
 use crate::sources::Source;
 
 /// Texels along the edge of a single cube's faces.
@@ -201,8 +201,8 @@ fn slabs(source: &Source, budget: &Budget<'_>, preset: Preset, gpu: Option<&Gpu>
     let captured = capture_to(source, &sampling, options, &file)?;
     let field = load(&FileArgs::new(&file))?;
     let size = format!("6 × {0}² × {1}²", sampling.cameras[0], sampling.resolution[0]);
-    let environment = SlabField::new(field.geometry().clone(), field.decode(MAX_DECODED_BYTES)?)?;
-    each(&of_slabs(&captured, format!("{size}, BC1, decoded before"), blocks(&field), Drawn::OnCpu(&environment)))?;
+    let environment = BlockField::new(&field)?;
+    each(&of_slabs(&captured, format!("{size}, BC1"), blocks(&field), Drawn::OnCpu(&environment)))?;
     for storage in [Storage::Bc1Volume, Storage::Bc1Array, Storage::Rgba8Array] {
         let Some(gpu) = gpu else { break };
         match SlabTexture::with_storage(gpu, &field, storage) {

@@ -84,29 +84,33 @@ impl<'a> SlabRenderer<'a> {
         })
     }
 
-    /// Submits one frame in two passes: the first writes what each pixel asks into `stuv`, the second asks it. The picture is that
-    /// of [`Self::draw`]. `stuv` and the target should have the camera's size.
+    /// Submits the first of two passes: what each pixel of a frame asks, into `stuv`, which should have the camera's size. Its view does not
+    /// matter.
     ///
     /// # Errors
     /// If the device refuses a pipeline or a command, or if a reflector is not a perfect mirror: the buffer does not hold how
     /// much it reflects.
-    pub fn draw_in_two_passes(
-        &mut self,
-        stuv: &StuvBuffer,
-        target: &Target,
-        frame: &Frame<'_>,
-    ) -> Result<(), GpuError> {
+    pub fn ask(&mut self, stuv: &StuvBuffer, frame: &Frame<'_>) -> Result<(), GpuError> {
         if frame.reflectors.iter().any(|mirror| mirror.reflectance != Reflectance::MIRROR) {
             let why = "only perfect mirrors are drawn so".to_owned();
             return Err(GpuError::Refused { what: "two passes", why });
         }
         let mirrors: Vec<Part> = frame.reflectors.iter().map(|mirror| Part::StuvMirror(mirror.relief())).collect();
         let behind = frame.background.then_some(Part::StuvBackground);
-        let resolve = Part::Resolve(frame.view);
         let colors = [Some(clear_color(&stuv.stuv)), Some(clear_color(&stuv.faces))];
-        self.compile(mirrors.iter().copied().chain(behind).chain([resolve]))?;
+        self.compile(mirrors.iter().copied().chain(behind))?;
+        self.submit(|renderer, encoder| renderer.encode(encoder, frame, &colors, &stuv.depth, &mirrors, behind))
+    }
+
+    /// Submits the second pass: clears the target, of the same size, to transparent black and answers what is asked. After [`Self::ask`]
+    /// the picture is that of [`Self::draw`]; every pixel is answered once, however small the triangles are.
+    ///
+    /// # Errors
+    /// If the device refuses the pipeline or a command.
+    pub fn answer(&mut self, stuv: &StuvBuffer, target: &Target, view: View) -> Result<(), GpuError> {
+        let resolve = Part::Resolve(view);
+        self.compile([resolve])?;
         self.submit(|renderer, encoder| {
-            renderer.encode(encoder, frame, &colors, &stuv.depth, &mirrors, behind);
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("second pass"),
                 color_attachments: &[Some(clear_color(&target.color))],

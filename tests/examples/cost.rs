@@ -16,9 +16,13 @@ use glam::{DVec3, Vec3};
 use lf_compress::bc1::Quality;
 use lf_compress::format::{Container, Limits, TexelEncoding};
 use lf_compress::{PackedCube, PackedLightField};
-use lf_gpu::{CubePicture, Gpu, GpuError, MirrorMesh, ReflectionPass, SlabTexture, Storage, Target};
+use lf_gpu::{
+    CubePicture, Frame, Gpu, GpuError, MirrorMesh, ReflectionPass, Reflector, SlabRenderer, SlabTexture, Storage,
+    StuvBuffer, Target,
+};
 use lf_math::{
-    Cell, CubeMap, DistanceCube, Image, LightFieldGeometry, Pinhole, PlanePlacement, SlabTexels, TriangleMesh,
+    Cell, CubeMap, DistanceCube, Image, LightFieldGeometry, Pinhole, Placement, PlanePlacement, Reflectance,
+    SlabTexels, TriangleMesh, View,
 };
 use lf_scene::reflectors;
 
@@ -155,8 +159,13 @@ impl Stage<'_> {
 
     /// Draws a frame, waits for it and says how long that took.
     fn frame(&self, method: &Method, mesh: &MirrorMesh) -> Result<Duration, GpuError> {
+        self.timed(|| method.pass.draw(self.gpu, &self.target, mesh, &self.camera))
+    }
+
+    /// Runs what submits work, waits for it and says how long that took.
+    fn timed(&self, submit: impl FnOnce() -> Result<(), GpuError>) -> Result<Duration, GpuError> {
         let (start, busy) = (Instant::now(), ProcessTime::now());
-        method.pass.draw(self.gpu, &self.target, mesh, &self.camera)?;
+        submit()?;
         self.gpu.wait()?;
         Ok(if self.processor_time { busy.elapsed() } else { start.elapsed() })
     }
@@ -183,11 +192,11 @@ fn ratios(reflector: &str, methods: &[Method]) {
     println!();
 }
 
-/// The share of a frame that reflects, on spheres of more and more triangles: what a white mirror takes is taken off.
+/// What reflections take on spheres of more and more triangles: in one pass, less what a white mirror takes; and in the second of two.
 fn triangles(stage: &Stage<'_>, half: f32, field: &PackedLightField) -> Result<(), Box<dyn Error>> {
     let texture = SlabTexture::new(stage.gpu, field)?;
     println!(
-        "| triangles | white, ms | {}, ms | difference, ms: median [quartiles] |\n|--:|--:|--:|--:|",
+        "| triangles | white, ms | {}, ms | difference, ms: median [quartiles] | second of two passes, ms |\n|--:|--:|--:|--:|--:|",
         texture.storage()
     );
     let method = |name: &str, pass| Method { name: name.to_owned(), bytes: 0, pass, times: vec![] };
@@ -195,13 +204,35 @@ fn triangles(stage: &Stage<'_>, half: f32, field: &PackedLightField) -> Result<(
         method("white", ReflectionPass::flat(stage.gpu)?),
         method("slabs", ReflectionPass::slabs(stage.gpu, &texture)?),
     ];
+    let mut renderer = SlabRenderer::new(stage.gpu, &texture)?;
     for subdivisions in SPHERES {
         let mesh = reflectors::sphere(subdivisions).fitted(Vec3::ZERO, 0.96 * half)?;
         stage.draw(&mesh, &mut methods)?;
         let [white, slabs] = &methods;
         let [low, middle, high] = quartiles(slabs.times.iter().zip(&white.times).map(|(a, b)| a - b).collect());
         let [white, slabs] = [white, slabs].map(|method| quartiles(method.times.clone())[1]);
-        println!("| {} | {white:.1} | {slabs:.1} | {middle:.1} [{low:.1}–{high:.1}] |", mesh.triangles().len());
+        let second = second_passes(stage, &mut renderer, &MirrorMesh::new(stage.gpu, &mesh)?)?;
+        let count = mesh.triangles().len();
+        println!("| {count} | {white:.1} | {slabs:.1} | {middle:.1} [{low:.1}–{high:.1}] | {} |", spread(second));
     }
     Ok(())
+}
+
+/// Milliseconds of the paper's second pass, which answers each pixel once.
+fn second_passes(stage: &Stage<'_>, renderer: &mut SlabRenderer<'_>, mesh: &MirrorMesh) -> Result<Vec<f64>, GpuError> {
+    let stuv = StuvBuffer::new(stage.gpu, stage.camera.width(), stage.camera.height())?;
+    let reflector =
+        Reflector { mesh, placement: Placement::IDENTITY, reflectance: Reflectance::MIRROR, normal_map: None };
+    let frame = Frame { camera: &stage.camera, reflectors: &[reflector], background: false, view: View::Color };
+    renderer.ask(&stuv, &frame)?;
+    renderer.answer(&stuv, &stage.target, View::Color)?;
+    stage.gpu.wait()?;
+    let mut round = || stage.timed(|| renderer.answer(&stuv, &stage.target, View::Color));
+    (0..stage.rounds).map(|_| Ok(1e3 * round()?.as_secs_f64())).collect()
+}
+
+/// Median and quartiles, for people.
+fn spread(times: Vec<f64>) -> String {
+    let [low, middle, high] = quartiles(times);
+    format!("{middle:.1} [{low:.1}–{high:.1}]")
 }

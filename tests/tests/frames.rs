@@ -203,7 +203,8 @@ fn two_passes_draw_what_one_does() {
             let frame = Frame { camera, reflectors: &reflectors, background: true, view };
             renderer.draw(&target, &frame).expect("draws");
             let one = target.read(&gpu).expect("reads");
-            renderer.draw_in_two_passes(&stuv, &target, &frame).expect("draws");
+            renderer.ask(&stuv, &frame).expect("asks");
+            renderer.answer(&stuv, &target, view).expect("draws");
             let found = differences(&format!("two passes, {view:?}"), &one, &target.read(&gpu).expect("reads"));
             assert!(found.max <= 1, "{view:?}");
         }
@@ -211,7 +212,7 @@ fn two_passes_draw_what_one_does() {
     // Pixels of the background, by the view ray alone; the last camera is the one whose eye is inside.
     let camera = cameras()[1];
     let frame = Frame { camera: &camera, reflectors: &[], background: true, view: View::Color };
-    renderer.draw_in_two_passes(&stuv, &target, &frame).expect("draws");
+    renderer.ask(&stuv, &frame).expect("asks");
     let asked = stuv.read(&gpu).expect("reads");
     for (x, y) in (0..SIZE).step_by(7).flat_map(|y| (0..SIZE).step_by(5).map(move |x| (x, y))) {
         let indexed = field.geometry().index_ray(&camera.ray(x, y)).expect("six slabs");
@@ -225,7 +226,7 @@ fn two_passes_draw_what_one_does() {
     }
     let tinted = [lf_gpu::Reflector { reflectance: Reflectance::new(Vec3::X, None).expect("shares"), ..reflectors[0] }];
     let frame = Frame { reflectors: &tinted, ..frame };
-    assert!(renderer.draw_in_two_passes(&stuv, &target, &frame).is_err());
+    assert!(renderer.ask(&stuv, &frame).is_err());
 }
 
 /// The paper's slabs hold every ray of a mirror inside the cell, from any eye; shrunken ones do not, and say so.

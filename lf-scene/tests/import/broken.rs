@@ -34,7 +34,9 @@ fn each_broken_number_is_an_error_that_names_the_place() {
             None => json["bufferViews"][0]["byteOffset"] = value.clone(),
         }
         let error = refusal(&json, &binary);
-        assert!(error.contains(said), "{pointer} = {value}: {error}");
+        // Where another crate asks serde_json for exact floats, the parser refuses what is too large for one.
+        let parser = said == "is not finite" && error.contains("number out of range");
+        assert!(error.contains(said) || parser, "{pointer} = {value}: {error}");
     }
 }
 

@@ -229,5 +229,7 @@ fn numbers_out_of_range_are_mended_and_infinite_ones_refused() {
     );
     let (mut json, binary) = square();
     json["materials"][0]["emissiveFactor"] = json!([1e300, 0, 0]);
-    assert!(refusal(&json, &binary).contains("material 0"));
+    let error = refusal(&json, &binary);
+    // The second where another crate asks serde_json for exact floats.
+    assert!(error.contains("material 0") || error.contains("number out of range"), "{error}");
 }
