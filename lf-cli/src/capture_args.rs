@@ -35,8 +35,8 @@ pub(crate) struct CaptureArgs {
     /// Rays per texel and axis, instead of the preset's: N×N rays a texel
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) supersample: Option<u32>,
-    /// Where the focal planes stand: at a middle of the inverse depths that a survey finds: `median`, the default, as it does best in the museum (docs/light-fields.md); `least-squares`, the mean;
-    /// `minimax`, between the nearest and the farthest (the harmonic mean of both depths); or `none` (at infinity), or metres from the
+    /// Where the focal planes stand: at a middle of the inverse depths that a survey finds: `median`, the default, as it does best
+    /// in the museum (docs/light-fields.md); `least-squares`, the mean; `minimax`, between the nearest and the farthest (the harmonic mean of both depths); or `none` (at infinity), or metres from the
     /// camera planes
     #[arg(long, value_name = "RULE|METRES", default_value = "median")]
     pub(crate) focus: FocusArg,

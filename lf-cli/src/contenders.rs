@@ -143,8 +143,9 @@ fn probes(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
     // From this many bytes on one ray a texel is traced, not four: that would take minutes.
     let grid = if megabytes > 20.0 { 1 } else { 2 };
     let set = CubeSet::capture(source, &places.collect::<Vec<_>>(), megabytes * 1e6, grid)?;
+    let cubes = set.decode()?;
     for steps in PROBE_STEPS {
-        let field = ProbeField::new(set.decode()?, steps, 6)?;
+        let field = ProbeField::new(cubes.clone(), steps, 6)?;
         each(&Contender {
             name: "8 distance cubes",
             parameters: format!(

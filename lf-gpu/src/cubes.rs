@@ -151,8 +151,7 @@ impl ReflectionPass {
         depths: CubeDepths<'_>,
         search: Search,
     ) -> Result<Self, GpuError> {
-        let [least, largest] = cube.depth_range().unwrap_or([2.0, 0.5]);
-        let (near, far) = (0.5 * least, 4.0 * largest);
+        let [near, far] = DistanceCube::search_span([cube]);
         let radius = cube.median_distance().min(far);
         let from = if matches!(depths, CubeDepths::Planes(_)) { Depths::Blocks } else { Depths::Texture };
         let (shader, steps, halvings) = match search {

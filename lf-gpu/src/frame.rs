@@ -4,7 +4,6 @@
 //! light field need is a pipeline of its own, compiled when a frame first asks for it. CPU twin: lf-ibr/src/scene.rs. Reflectors do
 //! not show each other.
 
-use glam::Vec3;
 use lf_math::{Pinhole, Placement, Reflectance, View, near_plane};
 
 use crate::error::GpuError;
@@ -214,20 +213,12 @@ impl FrameBuffers {
             // A buffer must not be empty.
             instances.push(InstanceUniform::new(&Placement::IDENTITY, &Reflectance::MIRROR, 1.0));
         }
-        let near = near_plane(frame.camera.eye(), frame.bounds());
+        let boxes = frame.reflectors.iter().map(|mirror| mirror.placement.bounds(mirror.mesh.bounds()));
+        let near = near_plane(frame.camera.eye(), boxes);
         Self {
             frame: uniform("frame", bytemuck::bytes_of(&FrameUniform::new(frame.camera, near))),
             sight: uniform("sight", bytemuck::bytes_of(&SightUniform::new(frame.camera))),
             instances: buffer(gpu, "instances", bytemuck::cast_slice(&instances), wgpu::BufferUsages::STORAGE),
         }
-    }
-}
-
-impl Frame<'_> {
-    /// The smallest box around all reflectors' boxes, cell space.
-    fn bounds(&self) -> (Vec3, Vec3) {
-        let boxes = self.reflectors.iter().map(|mirror| mirror.placement.bounds(mirror.mesh.bounds()));
-        let union = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
-        boxes.reduce(union).unwrap_or((Vec3::ZERO, Vec3::ZERO))
     }
 }

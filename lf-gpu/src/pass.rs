@@ -124,7 +124,7 @@ impl ReflectionPass {
     /// If the device refuses a command.
     pub fn draw(&self, gpu: &Gpu, target: &Target, mesh: &MirrorMesh, camera: &Pinhole) -> Result<(), GpuError> {
         gpu.checked("a frame", || {
-            let frame = FrameUniform::new(camera, near_plane(camera.eye(), mesh.bounds));
+            let frame = FrameUniform::new(camera, near_plane(camera.eye(), [mesh.bounds]));
             gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             self.encode(&mut encoder, target, mesh);

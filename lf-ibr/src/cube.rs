@@ -23,20 +23,13 @@ impl CubeField {
     }
 }
 
-impl CubeField {
-    /// A direction's face and the position in its bordered image, index units.
-    fn place(&self, direction: Vec3) -> Option<(&Image<[u8; 4]>, Vec2)> {
-        let coord = cube_coord(direction)?;
-        // Texel centres of the face are at ½; the border adds one.
-        let position = (coord.uv * self.size as f32 + 0.5).min(Vec2::splat(self.size as f32 + 0.5));
-        Some((&self.faces[usize::from(coord.face.index())], position))
-    }
-}
-
 impl Environment for CubeField {
     /// By direction alone, as if everything were infinitely far away: the origin is not used.
     fn look_up(&self, ray: &Ray) -> Option<Vec3> {
-        let (image, position) = self.place(ray.direction)?;
+        let coord = cube_coord(ray.direction)?;
+        let image = &self.faces[usize::from(coord.face.index())];
+        // Texel centres of the face are at ½; the border adds one.
+        let position = (coord.uv * self.size as f32 + 0.5).min(Vec2::splat(self.size as f32 + 0.5));
         Some(<[u8; 4]>::color(bilinear(position, |x, y| image.get(x as u32, y as u32))))
     }
 }

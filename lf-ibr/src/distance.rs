@@ -50,18 +50,11 @@ impl LitCube {
     }
 }
 
-/// Ways along rays within which they end: half of the least depth of any cube to four times the largest that is not infinite.
-pub(crate) fn span<'a>(cubes: impl Iterator<Item = &'a DistanceCube>) -> [f32; 2] {
-    let all = cubes.filter_map(DistanceCube::depth_range);
-    let [least, largest] = all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([2.0, 0.5]);
-    [0.5 * least, 4.0 * largest]
-}
-
 impl DistanceField {
     /// Reflections from one cube.
     #[must_use]
     pub fn new(cube: DistanceCube, search: Search) -> Self {
-        let span = span(std::iter::once(&cube));
+        let span = DistanceCube::search_span([&cube]);
         let start = cube.median_distance().min(span[1]);
         Self { cube: LitCube::new(cube), span, start, search }
     }
@@ -102,7 +95,7 @@ impl ProbeField {
         if cubes.is_empty() {
             return Err(GeometryError::ZeroCount { what: "number of probes" });
         }
-        let span = span(cubes.iter());
+        let span = DistanceCube::search_span(&cubes);
         Ok(Self { cubes: cubes.into_iter().map(LitCube::new).collect(), span, steps, halvings })
     }
 }

@@ -9,8 +9,7 @@
 //! whole texels wherever the plane is. Alone, a wrong plane shifts the texture, which weighs far more than the blur.
 //!
 //! All disparities are tried on the same texels, an eighth of the image away from its edges, evenly spread over cameras and images; which
-//! they are depends on nothing but the slab. Time does not grow with the number of cameras: a second or two on one core for images a
-//! thousand texels wide.
+//! they are depends on nothing but the slab. Time does not grow with the number of cameras.
 //!
 //! It finds one plane for all texels. Noise without texture leans to half a texel, where interpolation hides it.
 

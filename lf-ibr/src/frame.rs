@@ -1,7 +1,7 @@
 //! One frame of a reflector.
 
 use glam::{Vec3, Vec4};
-use lf_math::{Image, Ray, linear_from_srgb, normalized, reflect};
+use lf_math::{Image, Ray, linear_from_srgb};
 use rayon::prelude::*;
 
 use crate::gbuffer::{Fragment, GBuffer};
@@ -51,11 +51,7 @@ fn reflect_row(
     environment: &(impl Environment + ?Sized),
     pixels: &mut [[u8; 4]],
 ) {
-    let mirrored = |fragment: &Fragment| {
-        let normal = normalized(fragment.normal).unwrap_or(Vec3::Y);
-        Ray { origin: fragment.position, direction: reflect(fragment.position - eye, normal) }
-    };
-    let rays: Vec<Ray> = fragments.iter().flatten().map(mirrored).collect();
+    let rays: Vec<Ray> = fragments.iter().flatten().map(|f| f.reflected(eye, f.unit_normal())).collect();
     let mut answers = vec![None; rays.len()];
     environment.look_up_all(&rays, &mut answers);
     let covered = pixels.iter_mut().zip(fragments).filter(|(_, fragment)| fragment.is_some());

@@ -4,7 +4,7 @@
 //! shared edges by the top-left rule, attributes interpolated with perspective, nearest surface kept.
 
 use glam::{Mat4, Vec3, Vec4};
-use lf_math::{Image, Pinhole, TriangleMesh, near_plane};
+use lf_math::{Image, Pinhole, Ray, TriangleMesh, near_plane, normalized, reflect};
 
 /// Subpixel steps of the snapped coordinates, as Vulkan requires at least 4 bits of and common GPUs have 8 bits of.
 const SUBPIXEL: f32 = 256.0;
@@ -18,6 +18,18 @@ pub struct Fragment {
     pub normal: Vec3,
     /// Which mesh it belongs to.
     pub mesh: u32,
+}
+
+impl Fragment {
+    /// The interpolated normal at unit length; up where it has none.
+    pub(crate) fn unit_normal(&self) -> Vec3 {
+        normalized(self.normal).unwrap_or(Vec3::Y)
+    }
+
+    /// The mirrored view ray, by a unit normal (Eq. 2 of the paper).
+    pub(crate) fn reflected(&self, eye: Vec3, normal: Vec3) -> Ray {
+        Ray { origin: self.position, direction: reflect(self.position - eye, normal) }
+    }
 }
 
 /// The reflector's fragments as seen by a camera.
@@ -44,9 +56,8 @@ impl GBuffer {
     /// Draws meshes given in cell space, which hide each other.
     #[must_use]
     pub fn rasterize_all(meshes: &[TriangleMesh], camera: &Pinhole) -> Self {
-        let union = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
-        let bounds = meshes.iter().map(TriangleMesh::bounds).reduce(union).unwrap_or_default();
-        let clip_from_cell = camera.clip_from_cell(near_plane(camera.eye(), bounds));
+        let near = near_plane(camera.eye(), meshes.iter().map(TriangleMesh::bounds));
+        let clip_from_cell = camera.clip_from_cell(near);
         let mut target = Target::new(camera.width(), camera.height());
         for (number, mesh) in (0..).zip(meshes) {
             target.mesh(mesh, number, clip_from_cell);

@@ -60,7 +60,7 @@ impl DepthGuide {
     pub fn ends(&self, ray: &Ray) -> Option<[f32; 2]> {
         let indexed = self.geometry.index_ray(ray)?;
         let (slab, texels) = (&self.geometry.slabs()[indexed.slab], &self.texels[indexed.slab]);
-        let disparity = disparity(slab);
+        let disparity = slab.disparity_at(1.0);
         let last = slab.resolution().map(|n| n - 1);
         let mut ends = [f32::INFINITY, f32::NEG_INFINITY];
         for tap in slab.taps(&indexed.coord) {
@@ -88,12 +88,6 @@ impl DepthGuide {
         }
         (ends[0] <= ends[1]).then_some(ends)
     }
-}
-
-/// Texels that a point of inverse depth 1/m moves per camera.
-fn disparity(slab: &Slab) -> Vec2 {
-    let per_step = |i: usize| slab.st()[i].step() / slab.uv()[i].step();
-    Vec2::new(per_step(0), per_step(1))
 }
 
 /// How far along a ray it reaches an inverse depth: infinite for 0.

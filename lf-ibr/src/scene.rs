@@ -4,10 +4,7 @@
 //! `SlabRenderer` in lf-gpu. Reflectors do not show each other.
 
 use glam::Vec3;
-use lf_math::{
-    GeometryError, Image, NormalMap, Pinhole, Placement, Ray, Reflectance, TriangleMesh, normalized, reflect,
-    srgb_from_linear,
-};
+use lf_math::{GeometryError, Image, NormalMap, Pinhole, Placement, Reflectance, TriangleMesh, srgb_from_linear};
 use rayon::prelude::*;
 
 use crate::frame::{Environment, encode};
@@ -29,7 +26,7 @@ pub struct Reflector<'a> {
 impl Reflector<'_> {
     /// The unit normal at a fragment of it, cell space.
     fn normal(&self, fragment: &Fragment) -> Vec3 {
-        let smooth = normalized(fragment.normal).unwrap_or(Vec3::Y);
+        let smooth = fragment.unit_normal();
         let Some(map) = self.normal_map else { return smooth };
         let position = self.placement.mesh_point(fragment.position);
         self.placement.direction(map.bend(position, self.placement.mesh_direction(smooth)))
@@ -77,7 +74,7 @@ fn mirrored(
     environment: &(impl Environment + ?Sized),
 ) -> Option<Vec3> {
     let normal = mirror.normal(fragment);
-    let ray = Ray { origin: fragment.position, direction: reflect(fragment.position - eye, normal) };
+    let ray = fragment.reflected(eye, normal);
     if mirror.reflectance == Reflectance::MIRROR {
         return environment.look_up(&ray);
     }
@@ -90,7 +87,7 @@ fn mirrored(
 mod tests {
     use super::*;
     use glam::Quat;
-    use lf_math::srgb8_from_linear;
+    use lf_math::{Ray, srgb8_from_linear};
 
     /// Upwards bright, downwards dark, brighter than can be shown.
     struct Sky;

@@ -123,6 +123,15 @@ impl DistanceCube {
         range.reduce(|[least, largest], [depth, _]| [least.min(depth), largest.max(depth)])
     }
 
+    /// Ways along rays, metres, within which they are looked for in these cubes: half of the least depth of any to four times the largest
+    /// that is not infinite.
+    #[must_use]
+    pub fn search_span<'a>(cubes: impl IntoIterator<Item = &'a Self>) -> [f32; 2] {
+        let all = cubes.into_iter().filter_map(Self::depth_range);
+        let [least, largest] = all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([2.0, 0.5]);
+        [0.5 * least, 4.0 * largest]
+    }
+
     /// A box around what is seen, cell space: on each of its six sides the median of where the face's rays end, which may be infinitely
     /// far. It is what a person would set as the room's walls; a mean or an extreme would follow single things.
     #[must_use]

@@ -106,11 +106,12 @@ impl Pinhole {
     }
 }
 
-/// A near plane for drawing what lies in a box: a thousandth of the distance from `eye` to the box's far side.
+/// A near plane for drawing what lies in boxes: a thousandth of the distance from `eye` to the far side of the box around all of them.
 ///
 /// Nearer parts are clipped; a smaller share would cost nothing in depth but let an eye inside the mesh see its inside.
 #[must_use]
-pub fn near_plane(eye: Vec3, (min, max): (Vec3, Vec3)) -> f32 {
+pub fn near_plane(eye: Vec3, boxes: impl IntoIterator<Item = (Vec3, Vec3)>) -> f32 {
+    let (min, max) = boxes.into_iter().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();
     let reach = (0.5 * (min + max) - eye).length() + 0.5 * (max - min).length();
     (1e-3 * reach).max(f32::MIN_POSITIVE)
 }
