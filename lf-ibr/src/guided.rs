@@ -57,7 +57,7 @@ impl GuidedField {
     /// Reflections from these cubes, found by the guide.
     ///
     /// # Errors
-    /// There must be at least one cube.
+    /// There must be at least one cube, and as many texels of depth in each as of its picture.
     pub fn new(cubes: &[PackedCube], guide: DepthGuide) -> Result<Self, GeometryError> {
         let sizes = cubes.iter().map(PackedCube::size);
         let texels = sizes.max().ok_or(GeometryError::ZeroCount { what: "number of cubes" })?;
@@ -65,7 +65,7 @@ impl GuidedField {
         let reach = |cube: &PackedCube| (cube.position().abs() + guide.geometry().cell().half_extent()).length();
         let apart = cubes.iter().map(reach).fold(0.0, f32::max);
         let depths = cubes.iter().map(PackedCube::largest_depth).fold(0.0, f32::max);
-        let cubes = cubes.iter().map(SurfaceCube::new).collect();
+        let cubes = cubes.iter().map(SurfaceCube::new).collect::<Result<_, _>>()?;
         Ok(Self { cubes, apart, texels: 0.5 * texels as f32, far: (4.0 * depths).max(SKY * apart), guide })
     }
 

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use lf_compress::PackedCube;
 use lf_compress::bc1::{BLOCK_BYTES, decode_texel};
 use lf_compress::planes::{BLOCK_EDGE, PlaneImage};
-use lf_math::{CubeCoord, Face, Ray, cube_coord, cube_direction};
+use lf_math::{CubeCoord, Face, GeometryError, Ray, cube_coord, cube_direction};
 
 /// Samples closer to a place than this, in texels, count alike. Less picks the nearest sample and shows its noise, more blurs.
 const SHARPNESS: f32 = 0.3;
@@ -46,16 +46,21 @@ struct Spot {
 }
 
 impl SurfaceCube {
-    pub(crate) fn new(cube: &PackedCube) -> Self {
+    /// The depths must have as many texels as the picture.
+    pub(crate) fn new(cube: &PackedCube) -> Result<Self, GeometryError> {
         let (size, depths) = (cube.size(), cube.inverse_depths());
+        if depths[0].width() != size {
+            let have = [depths[0].width(), depths[0].height()];
+            return Err(GeometryError::Size { what: "face of inverse depths", have, want: [size; 2] });
+        }
         let colors = cube.radiance().iter().flat_map(|face| face.as_chunks().0);
-        Self {
+        Ok(Self {
             position: cube.position(),
             size,
             across: size.div_ceil(BLOCK_EDGE as u32),
             blocks: Face::ALL.into_iter().zip(depths).flat_map(|(face, image)| blocks(face, image)).collect(),
             colors: colors.copied().collect(),
-        }
+        })
     }
 
     pub(crate) fn position(&self) -> Vec3 {

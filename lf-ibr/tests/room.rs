@@ -167,4 +167,10 @@ fn brackets_hold_the_ends() {
 fn cubes_must_be_there() {
     assert!(ProbeField::new(vec![], 8, 8).is_err());
     assert!(GuidedField::new(&[], guide()).is_err());
+    // Depths coarser than the picture.
+    let (fine, coarse) = (cube(Vec3::ZERO, 16), cube(Vec3::ZERO, 8));
+    let uneven =
+        DistanceCube::new(Vec3::ZERO, fine.radiance().clone(), coarse.inverse_depths().clone()).expect("a cube");
+    let uneven = PackedCube::encode(&uneven, Quality::Standard).expect("small");
+    assert!(GuidedField::new(&[uneven], guide()).is_err());
 }
