@@ -14,9 +14,9 @@ use lf_math::PlanePlacement;
 
 use crate::capture_args::{CaptureArgs, CubemapArgs, MergeArgs};
 use crate::exchange_args::{ExportArgs, ImportArgs};
-use crate::methods_args::MethodsArgs;
 use crate::plan_args::PlanArgs;
 use crate::refocus_args::{HoldoutArgs, RefocusArgs};
+use crate::report::args::ReportArgs;
 use crate::scene_args::{LightArgs, SceneArgs, ViewArgs};
 use crate::sources::REFLECTOR_RADIUS;
 
@@ -44,8 +44,8 @@ pub(crate) enum Command {
     Plan(PlanArgs),
     /// Draw a mirror that reflects a .lfslab file
     Render(RenderArgs),
-    /// Compare ways to reflect a scene, ours and those that people use today: error, time and bytes on the same frames
-    Methods(MethodsArgs),
+    /// Measure error against time and bytes: ways to reflect a scene, ours and those that people use today, on the same frames
+    Report(ReportArgs),
     /// Show what a .lfslab file holds
     Info(InfoArgs),
     /// Check every byte of a .lfslab file
@@ -109,7 +109,7 @@ pub(crate) struct RenderArgs {
     /// The picture to write (.png)
     #[arg(long, value_name = "PNG")]
     pub(crate) out: PathBuf,
-    /// What mirrors: `sphere`, `teapot` or an OBJ file. Behind an `@` its place and radius, seen from the cell's centre, in edge
+    /// What mirrors: `sphere`, `teapot` (or `sphere:N` of 20·4ᴺ, `teapot:N` of 64·N² triangles) or an OBJ file. Behind an `@` its place and radius, seen from the cell's centre, in edge
     /// lengths of the cell: x,y,z or x,y,z,radius. May be given several times
     #[arg(long, value_name = "MESH[@X,Y,Z[,R]]", default_value = "teapot")]
     pub(crate) reflector: Vec<ReflectorArg>,

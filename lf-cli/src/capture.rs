@@ -88,9 +88,15 @@ pub(crate) fn run_merge(args: &MergeArgs) -> Result<()> {
 
 /// Captures into a file in one go, whatever an earlier such run left. Its journal has another name than that of `lfslab capture`,
 /// which may be hours of work.
-pub(crate) fn capture_to(source: &Source, sampling: &Sampling, options: Options, out: &Path) -> Result<Captured> {
+pub(crate) fn capture_to(
+    source: &Source,
+    sampling: &Sampling,
+    rule: FocusRule,
+    options: Options,
+    out: &Path,
+) -> Result<Captured> {
     let start = Instant::now();
-    let plan = survey(source, sampling, FocusRule::default(), options)?;
+    let plan = survey(source, sampling, rule, options)?;
     let path = with_suffix(out, ".demo.part");
     Journal::discard(&path)?;
     let mut journal = begin(&path, &plan, Shard::WHOLE)?;

@@ -7,8 +7,8 @@ use anyhow::{Context, Result};
 use lf_capture::Options;
 use lf_compress::{PackOptions, PackedLightField};
 use lf_math::{CubeMap, Image, Pinhole, PlanePlacement, TriangleMesh};
-use lf_report::{Figure, Machine, MethodResult, Report};
-use lf_scene::{Illumination, Quality, capture_cube};
+use lf_report::{Figure, Frames, Machine, MethodResult, Plot, Report};
+use lf_scene::{FocusRule, Illumination, Quality, capture_cube};
 
 use crate::args::{DemoArgs, FileArgs, Sampling};
 use crate::capture::{Captured, capture_to};
@@ -68,10 +68,14 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
         figures.extend(save_pictures(&args.out, name, frames)?);
     }
     write(&args.out.join("report.json"), report.to_json()?.as_bytes())?;
-    write(&args.out.join("error-time.svg"), report.error_time_svg()?.as_bytes())?;
+    for frames in report.frames() {
+        if let Some(svg) = report.plot(frames, Plot::Time)? {
+            write(&args.out.join(format!("{}-error-time.svg", frames.reflector)), svg.as_bytes())?;
+        }
+    }
     write(&args.out.join("report.html"), report.to_html(&figures)?.as_bytes())?;
     let open = format!("\n{:.0} s; open {}", start.elapsed().as_secs_f64(), args.out.join("report.html").display());
-    let lines = [vec![report.to_markdown_table()], report.headlines(), vec![open]].concat();
+    let lines = [vec![report.to_markdown()], report.headlines(), vec![open]].concat();
     print(&lines.join("\n"))
 }
 
@@ -93,7 +97,7 @@ fn capture(args: &DemoArgs, source: &Source, file: &Path) -> Result<Captured> {
     let sampling = args.preset.sampling();
     let (encoding, pack) = (lf_format::TexelEncoding::Bc1, PackOptions::default());
     let options = Options { grid: sampling.grid, encoding, pack, whole: false, depth: false };
-    capture_to(source, &sampling, options, file)
+    capture_to(source, &sampling, FocusRule::default(), options, file)
 }
 
 /// Takes the environment map, and notes what the report tells of the slabs.
@@ -180,7 +184,7 @@ fn save_pictures(out: &Path, name: &str, frames: &ReflectorFrames) -> Result<Vec
 fn save_figure(out: &Path, file: &str, title: &str, caption: &str, picture: &Image<[u8; 4]>) -> Result<Figure> {
     let png = png(picture)?;
     write(&out.join(format!("{file}.png")), &png)?;
-    Ok(Figure { title: title.to_owned(), caption: caption.to_owned(), png })
+    Ok(Figure { title: title.to_owned(), caption: caption.to_owned(), picture: png })
 }
 
 fn report(
@@ -194,7 +198,7 @@ fn report(
     for (name, frames) in frames {
         results.extend(frames.methods.iter().map(|method| method_result(args, prepared, name, method, gpu)));
         results.push(MethodResult {
-            reflector: name.clone(),
+            frames: drawn(args, prepared, name),
             method: "ray tracing".into(),
             parameters: format!(
                 "reference, 1 ray a pixel, samples of it: {}; scene, hierarchy and textures in memory",
@@ -206,6 +210,7 @@ fn report(
             bytes_on_device: prepared.source.tracer.memory_bytes() as u64,
             bytes_on_disk: None,
             preparation_s: prepared.source.build_time.as_secs_f64(),
+            rays: None,
         });
     }
     let mut notes = vec![
@@ -219,10 +224,10 @@ fn report(
         title: format!("Reflections in {}", prepared.source.name()),
         generator: concat!("lfslab ", env!("CARGO_PKG_VERSION")).into(),
         machine: Machine::detect(adapter),
-        scene: prepared.source.name().into(),
         reproduce: command_line(),
         facts: facts(args, prepared),
         results,
+        tables: vec![],
         notes,
     })
 }
@@ -238,7 +243,7 @@ fn method_result(
     let sampling = args.preset.sampling();
     let cube_bytes = 4 * 6 * u64::from(CUBE_SIZE).pow(2);
     let seconds = |time: Duration| time.as_secs_f64();
-    let (method, parameters, bytes_on_device, bytes_on_disk, preparation_s) = match frames.asked {
+    let (method, parameters, bytes_on_device, bytes_on_disk, preparation_s, rays) = match frames.asked {
         Asked::Slabs => (
             "slabs",
             format!(
@@ -251,6 +256,7 @@ fn method_result(
             side.map_or(4 * prepared.texels, |side| side.slab_bytes),
             Some(prepared.captured.file_bytes),
             seconds(prepared.captured.time),
+            prepared.captured.rays,
         ),
         Asked::Cube => (
             lf_report::BASELINE_METHOD,
@@ -258,10 +264,11 @@ fn method_result(
             cube_bytes,
             None,
             seconds(prepared.cube_time),
+            6 * u64::from(CUBE_SIZE * CUBE_GRID).pow(2),
         ),
     };
     MethodResult {
-        reflector: reflector.to_owned(),
+        frames: drawn(args, prepared, reflector),
         method: method.to_owned(),
         parameters,
         device: side.map_or("CPU".to_owned(), |side| side.gpu.name()),
@@ -270,7 +277,12 @@ fn method_result(
         bytes_on_device,
         bytes_on_disk,
         preparation_s,
+        rays: Some(rays),
     }
+}
+
+fn drawn(args: &DemoArgs, prepared: &Prepared, reflector: &str) -> Frames {
+    Frames { scene: prepared.source.name().to_owned(), reflector: reflector.to_owned(), size: [args.size; 2] }
 }
 
 /// Where the camera planes stand, for people.

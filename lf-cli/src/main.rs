@@ -7,7 +7,6 @@
 mod args;
 mod capture;
 mod capture_args;
-mod contenders;
 mod crop;
 mod cubemap;
 mod demo;
@@ -18,9 +17,6 @@ mod frames;
 mod holdout;
 mod info;
 mod input;
-mod methods;
-mod methods_args;
-mod methods_table;
 mod output;
 mod pictures;
 mod plan;
@@ -29,6 +25,7 @@ mod progress;
 mod refocus;
 mod refocus_args;
 mod render;
+mod report;
 mod scene_args;
 mod sources;
 mod validate;
@@ -60,7 +57,7 @@ fn run(command: &Command) -> Result<()> {
         Command::Merge(args) => capture::run_merge(args),
         Command::Cubemap(args) => cubemap::run(args),
         Command::Plan(args) => plan::run(args),
-        Command::Methods(args) => methods::run(args),
+        Command::Report(args) => report::run(args),
         Command::Render(args) => render::run(args),
         Command::Info(args) => info::run(args),
         Command::Validate(args) => validate::run(args),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use image::ImageReader;
 use lf_compress::PackedLightField;
 use lf_format::TexelEncoding;
@@ -19,7 +19,7 @@ use crate::frames::FOV_Y;
 use crate::input::{MAX_DECODED_BYTES, load};
 use crate::output::{check_writable, megabytes, png, print, write};
 use crate::pictures::{ERROR_GAIN, difference, display, masked, noise, over, strip};
-use crate::sources::{Loaded, REFLECTOR_RADIUS, builtin, from_file};
+use crate::sources::{Loaded, placed};
 
 /// A reflector, ready to be drawn.
 struct Placed {
@@ -76,15 +76,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     print(&(args.out.display().to_string() + &note))
 }
 
-/// The mesh of a reflector and where it stands.
 fn place(arg: &ReflectorArg, cell: &Cell) -> Result<Placed> {
-    let (_, mesh) = match arg.mesh.as_str() {
-        name @ ("sphere" | "teapot") => builtin(name, cell)?,
-        file => from_file(Path::new(file), cell)?,
-    };
-    let edge = 2.0 * cell.half_extent().min_element();
-    let placement = Placement::new(arg.radius / REFLECTOR_RADIUS, Quat::IDENTITY, arg.place * edge)?;
-    Ok(Placed { mesh, placement })
+    placed(arg, cell).map(|(mesh, placement)| Placed { mesh, placement })
 }
 
 /// A picture of normals.

@@ -4,13 +4,14 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
-use glam::Vec3;
-use lf_math::{Cell, TriangleMesh};
+use glam::{Quat, Vec3};
+use lf_math::{Cell, Placement, TriangleMesh};
 use lf_scene::{
     EMBEDDED, Environment, EnvironmentMap, ImportOptions, Imported, Lighting, Scene, SceneCamera, Tracer,
     find_free_space, import_environment, import_gltf, import_obj, is_free, reflectors,
 };
 
+use crate::args::ReflectorArg;
 use crate::scene_args::{LightArgs, SceneArgs};
 
 /// The eye's distance from the cell's centre in edge lengths. A cell found in free space leaves room for it.
@@ -136,8 +137,33 @@ fn free_cell(tracer: &Tracer, camera: Option<&SceneCamera>) -> Result<Cell> {
 
 /// A reflector that this program carries.
 pub(crate) fn builtin(name: &str, cell: &Cell) -> Result<(String, TriangleMesh)> {
-    let mesh = if name == "sphere" { reflectors::sphere(5) } else { reflectors::teapot(10) };
+    let mesh = embedded(name).with_context(|| format!("there is no reflector {name:?}"))?;
     fitted(name.to_owned(), &mesh, cell)
+}
+
+/// `sphere` and `teapot`, or `sphere:N` of 20·4ᴺ and `teapot:N` of 64·N² triangles.
+fn embedded(name: &str) -> Option<TriangleMesh> {
+    let (shape, count) = name.split_once(':').unwrap_or((name, ""));
+    let number = |usual: u32, most: u32| {
+        let number = if count.is_empty() { Some(usual) } else { count.parse().ok() };
+        number.filter(|number| (1..=most).contains(number))
+    };
+    match shape {
+        "sphere" => number(5, 9).map(reflectors::sphere),
+        "teapot" => number(10, 256).map(reflectors::teapot),
+        _ => None,
+    }
+}
+
+/// The mesh of a reflector, and where it stands.
+pub(crate) fn placed(arg: &ReflectorArg, cell: &Cell) -> Result<(TriangleMesh, Placement)> {
+    let (_, mesh) = match embedded(&arg.mesh) {
+        Some(mesh) => fitted(arg.mesh.clone(), &mesh, cell)?,
+        None => from_file(Path::new(&arg.mesh), cell)?,
+    };
+    let edge = 2.0 * cell.half_extent().min_element();
+    let placement = Placement::new(arg.radius / REFLECTOR_RADIUS, Quat::IDENTITY, arg.place * edge)?;
+    Ok((mesh, placement))
 }
 
 /// A reflector from an OBJ file, labelled by the file's stem.

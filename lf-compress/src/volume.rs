@@ -120,6 +120,12 @@ impl VolumeLayout {
         self.size
     }
 
+    /// Slices up to the last that a slab has: what is left of the depth is there to make it a power of two.
+    #[must_use]
+    pub fn slices(&self) -> u32 {
+        self.slabs.iter().map(|slab| slab.first_slice + slab.slices()).max().unwrap_or(0)
+    }
+
     /// The parts, by position of the slab.
     #[must_use]
     pub fn slabs(&self) -> &[SlabLayout] {

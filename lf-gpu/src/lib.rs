@@ -1,7 +1,7 @@
 //! The GPU renderer, by `wgpu`: reflections from light field slabs and environment maps, offscreen.
 //!
-//! [`Gpu::new`] opens an adapter; [`SlabTexture`] uploads a packed light field without decoding it, as a volume texture
-//! of BC1 blocks where the device samples that, else as a 2D array, else as plain RGBA ([`Storage`]); a
+//! [`Gpu::new`] opens an adapter; [`SlabTexture`] uploads a packed light field without decoding it, as a 2D array
+//! of BC1 blocks where the device samples those, else as a volume, else as plain RGBA ([`Storage`]); a
 //! [`ReflectionPass`] draws a [`MirrorMesh`] into a [`Target`]; a [`SlabRenderer`] draws whole [`Frame`]s: any number of placed,
 //! tinted [`Reflector`]s and the scene behind them, in one pass or the paper's two ([`StuvBuffer`]). One pass, four hardware-bilinear fetches a pixel, for the
 //! slabs (Figs. 6 and 8 of Yu, Yang & McMillan); one fetch for the environment map, also where it is projected on a sphere or a box

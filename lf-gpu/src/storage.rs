@@ -11,16 +11,16 @@ use crate::layers::Layers;
 
 /// How the packed volume lies in device memory.
 ///
-/// [`SlabTexture::new`](crate::SlabTexture::new) takes the first form that the device can hold: BC1 blocks as a volume, BC1 blocks as an
-/// array, decoded texels as an array. An array with fewer layers than the light field has slices gets several slices to a
+/// [`SlabTexture::new`](crate::SlabTexture::new) takes the first form that the device can hold: BC1 blocks as an array, which is
+/// sampled faster (`docs/cost.md`) and has no spare slots, BC1 blocks as a volume, decoded texels as an array. An array with fewer layers than the light field has slices gets several slices to a
 /// layer, as many as it must. Forms are passed over for missing features, for limits, and for a budget of bytes
 /// ([`DeviceOptions`](crate::DeviceOptions)); all of this is decided before the device is asked for memory. The picture is the same in each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Storage {
-    /// BC1 blocks in a 3D texture, as in the paper. Needs `TEXTURE_COMPRESSION_BC_SLICED_3D`.
-    Bc1Volume,
     /// BC1 blocks in a 2D array texture. Needs `TEXTURE_COMPRESSION_BC`.
     Bc1Array,
+    /// BC1 blocks in a 3D texture, as in the paper. Needs `TEXTURE_COMPRESSION_BC_SLICED_3D`.
+    Bc1Volume,
     /// Decoded texels in a 2D array texture, eight times the bytes. Any device.
     Rgba8Array,
     /// Linear half floats in a 2D array texture, 8 bytes a texel, for light fields that have them. Any device.
@@ -43,13 +43,13 @@ impl fmt::Display for Storage {
 pub(crate) struct Plan {
     pub(crate) storage: Storage,
     pub(crate) layers: Layers,
-    /// Of the texture, spare slots of the power-of-two volume included.
+    /// Of the texture; a volume's spare slots are included.
     pub(crate) bytes: u64,
 }
 
 impl Storage {
     /// All forms, the preferred one first.
-    pub const ALL: [Self; 4] = [Self::Bc1Volume, Self::Bc1Array, Self::Rgba8Array, Self::Rgba16FArray];
+    pub const ALL: [Self; 4] = [Self::Bc1Array, Self::Bc1Volume, Self::Rgba8Array, Self::Rgba16FArray];
 
     /// Whether it keeps BC1 blocks as they are.
     pub(crate) fn has_blocks(self) -> bool {
@@ -94,7 +94,9 @@ impl Storage {
         if !missing.is_empty() {
             return Err(obstacle(format!("the device lacks {missing:?}")));
         }
-        let size = field.layout().size();
+        let [width, height, depth] = field.layout().size();
+        // A texture of layers needs no power of two.
+        let size = [width, height, if self == Self::Bc1Volume { depth } else { field.layout().slices() }];
         let layers = self.layers(&gpu.device.limits(), size).map_err(obstacle)?;
         let bytes = self.bytes(layers.size());
         gpu.affords(format!("the {self} of this light field"), bytes)?;

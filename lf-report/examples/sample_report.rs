@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use lf_report::{BASELINE_METHOD, EyeError, Figure, Machine, MethodResult, Report, Timing};
+use lf_report::{BASELINE_METHOD, EyeError, Figure, Frames, Machine, MethodResult, Plot, Report, Table, Timing};
 
 fn result(reflector: &str, method: &str, psnr_db: Option<f64>, ms: f64) -> Option<MethodResult> {
     let eye = |(psnr, eye): (f64, usize)| {
@@ -24,7 +24,7 @@ fn result(reflector: &str, method: &str, psnr_db: Option<f64>, ms: f64) -> Optio
     };
     let slabs = method == "slabs";
     Some(MethodResult {
-        reflector: reflector.to_owned(),
+        frames: Frames { scene: "museum".to_owned(), reflector: reflector.to_owned(), size: [512; 2] },
         method: method.to_owned(),
         parameters: if slabs { "16×16 cameras of 64×64, BC1" } else { "" }.to_owned(),
         device: "llvmpipe (LLVM 15.0.6, 256 bits), Vulkan".to_owned(),
@@ -33,6 +33,7 @@ fn result(reflector: &str, method: &str, psnr_db: Option<f64>, ms: f64) -> Optio
         bytes_on_device: if slabs { 4_194_304 } else { 1_572_864 },
         bytes_on_disk: psnr_db.map(|_| if slabs { 3_511_200 } else { 911_002 }),
         preparation_s: if slabs { 71.3 } else { 0.42 },
+        rays: psnr_db.map(|_| if slabs { 6_300_000 } else { 1_572_864 }),
     })
 }
 
@@ -51,7 +52,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         title: "Reflections in the museum: a sample with made-up numbers".to_owned(),
         generator: format!("sample_report {}", env!("CARGO_PKG_VERSION")),
         machine: Machine::detect(None),
-        scene: "museum (procedural)".to_owned(),
         reproduce: "cargo run -p lf-report --example sample_report -- sample.html".to_owned(),
         facts: vec![
             ("Slabs".to_owned(), "6 × 16×16 cameras of 64×64 rays".to_owned()),
@@ -61,16 +61,22 @@ fn main() -> Result<(), Box<dyn Error>> {
             .into_iter()
             .filter_map(|(reflector, method, psnr, ms)| result(reflector, method, psnr, ms))
             .collect(),
+        tables: vec![Table {
+            title: "Left out".to_owned(),
+            caption: "What this scene does not need.".to_owned(),
+            columns: ["what", "saves"].map(str::to_owned).to_vec(),
+            rows: vec![["texels that no ray asks for", "69 % of the bytes"].map(str::to_owned).to_vec()],
+        }],
         notes: vec!["All numbers of this page are made up; only its layout is real.".to_owned()],
     };
     let figure = |path: PathBuf| {
         let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Figure { title, caption: "A figure with its caption.".to_owned(), png: std::fs::read(path)? })
+        Ok(Figure { title, caption: "A figure with its caption.".to_owned(), picture: std::fs::read(path)? })
     };
     let figures = arguments.map(figure).collect::<Result<Vec<_>, std::io::Error>>()?;
     std::fs::write(&out, report.to_html(&figures)?)?;
-    std::fs::write(out.with_extension("svg"), report.error_time_svg()?)?;
+    std::fs::write(out.with_extension("svg"), report.plot(&report.results[0].frames, Plot::Time)?.unwrap_or_default())?;
     std::fs::write(out.with_extension("json"), report.to_json()?)?;
-    print!("{}", report.to_markdown_table());
+    print!("{}", report.to_markdown());
     Ok(())
 }

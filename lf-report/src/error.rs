@@ -15,6 +15,12 @@ pub enum ReportError {
     /// The JSON text could not be produced.
     #[error("cannot write the report as JSON")]
     Json(#[source] serde_json::Error),
+    /// The CSV text could not be produced.
+    #[error("cannot write the report as CSV: {0}")]
+    Csv(String),
+    /// A file is no report that this version can compare with.
+    #[error("cannot compare with this report: {0}")]
+    Baseline(String),
     /// The plot could not be drawn.
     #[error("cannot draw the plot: {0}")]
     Plot(String),

@@ -7,22 +7,23 @@ use std::fmt::Write;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
+use crate::axis::Plot;
 use crate::error::ReportError;
-use crate::report::{Figure, Report, psnr_texts, time_texts};
-use crate::result::MethodResult;
+use crate::report::{Figure, Report, Table, psnr_texts, time_texts};
+use crate::result::{Frames, MethodResult};
 use crate::units::{self, html_escape};
 
 const STYLE: &str = include_str!("style.css");
 
-/// First bytes of every PNG file (PNG specification, 5.2).
-const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// First bytes of every PNG file (PNG specification, 5.2), and of every JPEG file (ITU T.81, B.1.1.3: SOI, then a marker).
+const SIGNATURES: [(&[u8], &str); 2] = [(b"\x89PNG\r\n\x1a\n", "png"), (b"\xFF\xD8\xFF", "jpeg")];
 
 pub(crate) fn page(report: &Report, figures: &[Figure]) -> Result<String, ReportError> {
-    let svg = report.error_time_svg()?;
+    let frames = report.frames().into_iter().map(|frames| frames_section(report, frames));
     let sections = [
         header(report),
-        plot_section(&svg),
-        results_section(report),
+        frames.collect::<Result<Vec<_>, _>>()?.concat(),
+        report.tables.iter().map(table_section).collect(),
         figures_section(figures)?,
         eyes_section(report),
         run_section(report),
@@ -37,7 +38,7 @@ pub(crate) fn page(report: &Report, figures: &[Figure]) -> Result<String, Report
     ))
 }
 
-/// Title and what came out, in one sentence for each reflector.
+/// Title and what came out, in one sentence for all frames and devices.
 fn header(report: &Report) -> String {
     let mut html = format!("<header>\n<h1>{}</h1>\n", html_escape(&report.title));
     for headline in report.headlines() {
@@ -47,44 +48,59 @@ fn header(report: &Report) -> String {
         let rest = if rest.is_empty() { String::new() } else { format!(" ({rest}") };
         let _ = writeln!(html, "<p class=\"headline\"><strong>{start}</strong>{rest}</p>");
     }
-    let scene = html_escape(&report.scene);
+    let mut scenes: Vec<&str> = report.results.iter().map(|result| result.frames.scene.as_str()).collect();
+    scenes.dedup();
+    let scene = html_escape(&scenes.join(", "));
     let generator = html_escape(&report.generator);
     let _ =
         writeln!(html, "<p class=\"faint\">Scene: {scene}. All figures were measured in one run by {generator}.</p>");
     html + "</header>\n"
 }
 
-/// The plot, which brings its own heading.
-fn plot_section(svg: &str) -> String {
-    let inline = svg.replacen(
-        "xmlns=\"http://www.w3.org/2000/svg\"",
-        "class=\"plot\" role=\"img\" aria-label=\"Error against run time; the numbers are in the next table\"",
-        1,
+/// What was measured on the same frames: plots, and the methods in the order measured.
+fn frames_section(report: &Report, frames: &Frames) -> Result<String, ReportError> {
+    let label = html_escape(&report.label(frames));
+    let mut html = format!("<section>\n<h2>{label}</h2>\n");
+    for plot in Plot::ALL {
+        if let Some(svg) = report.plot(frames, plot)? {
+            let named = format!(
+                "class=\"plot\" role=\"img\" aria-label=\"{}; the numbers are in the next table\"",
+                plot.title()
+            );
+            let inline = svg.replacen("xmlns=\"http://www.w3.org/2000/svg\"", &named, 1);
+            let _ = writeln!(html, "<div class=\"wide\">\n{inline}</div>");
+        }
+    }
+    let results = report.results_of(frames);
+    let best = results.iter().filter_map(|r| r.mean_psnr_db()).max_by(f64::total_cmp);
+    let _ = write!(
+        html,
+        "<div class=\"wide\"><table>\n<caption>{label}</caption>\n<thead><tr><th scope=\"col\">Method</th>\
+         <th scope=\"col\">PSNR <small>dB, mean</small></th><th scope=\"col\">FLIP <small>mean</small></th>\
+         <th scope=\"col\">Per frame <small>ms, median</small></th>\
+         <th scope=\"col\">Over eyes <small>dB, min–max</small></th><th scope=\"col\">Quartiles <small>ms</small></th>\
+         <th scope=\"col\">On device</th><th scope=\"col\">On disk</th><th scope=\"col\">Preparation</th></tr></thead>\n\
+         <tbody>\n"
     );
-    format!("<section>\n<div class=\"wide\">\n{inline}</div>\n</section>\n")
+    for result in results {
+        result_row(&mut html, result, best.is_some() && result.mean_psnr_db() == best);
+    }
+    Ok(html + "</tbody>\n</table></div>\n</section>\n")
 }
 
-/// One table for each reflector: its methods in the order measured.
-fn results_section(report: &Report) -> String {
-    let mut html = "<section>\n<h2>Results</h2>\n".to_owned();
-    for (reflector, results) in by_reflector(report) {
-        let best = results.iter().filter_map(|r| r.mean_psnr_db()).max_by(f64::total_cmp);
-        let _ = write!(
-            html,
-            "<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr><th scope=\"col\">Method</th>\
-             <th scope=\"col\">PSNR <small>dB, mean</small></th><th scope=\"col\">FLIP <small>mean</small></th>\
-             <th scope=\"col\">Per frame <small>ms, median</small></th>\
-             <th scope=\"col\">Over eyes <small>dB, min–max</small></th><th scope=\"col\">Quartiles <small>ms</small></th>\
-             <th scope=\"col\">On device</th><th scope=\"col\">On disk</th><th scope=\"col\">Preparation</th></tr></thead>\n\
-             <tbody>\n",
-            html_escape(reflector)
-        );
-        for result in results {
-            result_row(&mut html, result, best.is_some() && result.mean_psnr_db() == best);
-        }
-        html += "</tbody>\n</table></div>\n";
-    }
-    html + "</section>\n"
+/// A table of texts.
+fn table_section(Table { title, caption, columns, rows }: &Table) -> String {
+    let cells = |cells: &[String], tag: &str| -> String {
+        cells.iter().map(|cell| format!("<{tag}>{}</{}>", html_escape(cell), &tag[..2])).collect()
+    };
+    let rows: String = rows.iter().map(|row| format!("<tr>{}</tr>\n", cells(row, "td"))).collect();
+    format!(
+        "<section>\n<h2>{}</h2>\n<p class=\"faint\">{}</p>\n<div class=\"wide\"><table class=\"texts\">\n<thead><tr>{}</tr></thead>\n\
+         <tbody>\n{rows}</tbody>\n</table></div>\n</section>\n",
+        html_escape(title),
+        html_escape(caption),
+        cells(columns, "th scope=\"col\""),
+    )
 }
 
 fn result_row(html: &mut String, result: &MethodResult, best: bool) {
@@ -110,25 +126,25 @@ fn bytes_cell(count: u64) -> String {
     format!("<td title=\"{} bytes\">{}</td>", units::grouped(count), units::bytes(count))
 }
 
-/// One table for each reflector: PSNR and largest difference of every eye.
+/// One table for all frames: PSNR and largest difference of every eye.
 fn eyes_section(report: &Report) -> String {
     let mut html = "<section>\n<h2>Each eye</h2>\n<p class=\"faint\">PSNR in dB, below it the largest difference of \
                     any colour component in steps of 1/255.</p>\n"
         .to_owned();
-    for (reflector, results) in by_reflector(report) {
-        let compared: Vec<&MethodResult> = results.into_iter().filter(|r| !r.is_reference()).collect();
+    for frames in report.frames() {
+        let compared: Vec<_> = report.results_of(frames).into_iter().filter(|r| !r.is_reference()).collect();
         let columns = compared.iter().map(|r| r.eyes.len()).max().unwrap_or(0);
         if columns == 0 {
             continue;
         }
         let pixels = || compared.iter().flat_map(|r| &r.eyes).map(|eye| eye.pixels as u64);
         let (fewest, most) = (pixels().min().unwrap_or(0), pixels().max().unwrap_or(0));
-        let reflector = html_escape(reflector);
+        let label = html_escape(&report.label(frames));
         let (fewest, most) = (units::grouped(fewest), units::grouped(most));
         let pixels = if fewest == most { most } else { format!("{fewest}–{most}") };
         let _ = write!(
             html,
-            "<div class=\"wide\"><table class=\"eyes\">\n<caption>{reflector} <small>{pixels} pixels an eye</small>\
+            "<div class=\"wide\"><table class=\"eyes\">\n<caption>{label} <small>{pixels} pixels an eye</small>\
              </caption>\n<thead><tr><th scope=\"col\">Method</th>"
         );
         for eye in 0..columns {
@@ -160,15 +176,16 @@ fn figures_section(figures: &[Figure]) -> Result<String, ReportError> {
     }
     let mut html = "<section>\n<h2>Images</h2>\n".to_owned();
     for figure in figures {
-        if !figure.png.starts_with(PNG_SIGNATURE) {
-            let what = format!("the figure \"{}\"", figure.title);
-            return Err(ReportError::InvalidArgument { what, why: "its bytes are not a PNG file".to_owned() });
-        }
+        let known = SIGNATURES.iter().find(|(signature, _)| figure.picture.starts_with(signature));
+        let (_, kind) = known.ok_or_else(|| ReportError::InvalidArgument {
+            what: format!("the figure \"{}\"", figure.title),
+            why: "its bytes are neither a PNG nor a JPEG file".to_owned(),
+        })?;
         let (title, caption) = (html_escape(&figure.title), html_escape(&figure.caption));
-        let data = STANDARD.encode(&figure.png);
+        let data = STANDARD.encode(&figure.picture);
         let _ = writeln!(
             html,
-            "<figure>\n<img alt=\"{title}\" src=\"data:image/png;base64,{data}\">\n\
+            "<figure>\n<img alt=\"{title}\" src=\"data:image/{kind};base64,{data}\">\n\
              <figcaption><strong>{title}</strong> {caption}</figcaption>\n</figure>"
         );
     }
@@ -209,25 +226,13 @@ fn definitions<'a>(heading: &str, rows: impl IntoIterator<Item = (&'a str, &'a s
     html + "</dl>\n"
 }
 
-/// The results of each reflector, in order of appearance.
-fn by_reflector(report: &Report) -> Vec<(&str, Vec<&MethodResult>)> {
-    let mut groups: Vec<(&str, Vec<&MethodResult>)> = Vec::new();
-    for result in &report.results {
-        match groups.iter_mut().find(|(reflector, _)| *reflector == result.reflector) {
-            Some((_, group)) => group.push(result),
-            None => groups.push((&result.reflector, vec![result])),
-        }
-    }
-    groups
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sample;
 
     fn figure(png: &[u8]) -> Figure {
-        Figure { title: "Orbit & <eyes>".to_owned(), caption: "Eight of them.".to_owned(), png: png.to_vec() }
+        Figure { title: "Orbit & <eyes>".to_owned(), caption: "Eight of them.".to_owned(), picture: png.to_vec() }
     }
 
     #[test]
@@ -241,6 +246,8 @@ mod tests {
             "Quartiles",
             "FLIP",
             "<td>0.062</td>",
+            "<h2>Left out</h2>",
+            "<td>a|b</td>",
             "Each eye",
             "src=\"data:image/png;base64,iVBORw0KGgouLi4=\"",
             "Orbit &amp; &lt;eyes&gt;",
@@ -260,24 +267,27 @@ mod tests {
     fn every_text_is_escaped() {
         let evil = || "<script>alert(1)</script>".to_owned();
         let mut report = sample::report();
-        (report.title, report.generator, report.scene, report.reproduce) = (evil(), evil(), evil(), evil());
+        (report.title, report.generator, report.reproduce) = (evil(), evil(), evil());
+        let table = &mut report.tables[0];
+        (table.title, table.caption, table.columns, table.rows) = (evil(), evil(), vec![evil()], vec![vec![evil()]]);
         (report.facts, report.notes) = (vec![(evil(), evil())], vec![evil()]);
         let machine = &mut report.machine;
         (machine.cpu, machine.adapter, machine.os, machine.build_profile) = (evil(), Some(evil()), evil(), evil());
         for result in &mut report.results {
-            (result.reflector, result.parameters, result.device) = (evil(), evil(), evil());
+            (result.frames.reflector, result.frames.scene) = (evil(), evil());
+            (result.parameters, result.device) = (evil(), evil());
         }
         report.results[2].method = evil();
-        let mut figure = figure(PNG_SIGNATURE);
+        let mut figure = figure(SIGNATURES[0].0);
         (figure.title, figure.caption) = (evil(), evil());
         let html = report.to_html(&[figure]).unwrap();
         assert!(!html.contains("<script") && html.contains("&lt;script&gt;alert(1)"));
     }
 
     #[test]
-    fn figures_must_be_png() {
+    fn figures_must_be_pictures() {
         let message = sample::report().to_html(&[figure(b"GIF89a")]).unwrap_err().to_string();
-        assert!(message.contains("Orbit & <eyes>") && message.contains("not a PNG"), "{message}");
+        assert!(message.contains("Orbit & <eyes>") && message.contains("neither a PNG"), "{message}");
     }
 
     #[test]
@@ -290,7 +300,7 @@ mod tests {
 
     #[test]
     fn elements_are_balanced() {
-        let html = sample::report().to_html(&[figure(PNG_SIGNATURE)]).unwrap();
+        let html = sample::report().to_html(&[figure(SIGNATURES[0].0)]).unwrap();
         for tag in ["main", "header", "section", "table", "tr", "td", "th", "div", "dl", "figure", "small", "svg"] {
             let opened = html.matches(&format!("<{tag}>")).count() + html.matches(&format!("<{tag} ")).count();
             assert_eq!(opened, html.matches(&format!("</{tag}>")).count(), "{tag}");

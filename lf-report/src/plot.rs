@@ -1,4 +1,4 @@
-//! The plots of error against run time and against memory, drawn with plotters' SVG backend.
+//! The plots of a report, drawn with plotters' SVG backend.
 
 use plotters::coord::Shift;
 use plotters::coord::combinators::{BindKeyPoints, IntoLogRange};
@@ -6,7 +6,7 @@ use plotters::drawing::DrawingAreaErrorKind;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::axis::{Axis, decade_ticks, tick_label};
+use crate::axis::{Plot, decade_ticks, tick_label};
 use crate::error::ReportError;
 use crate::labels::{LabelPlacer, Rect};
 use crate::pareto::pareto_front;
@@ -49,19 +49,20 @@ struct Mark {
     at_top: bool,
 }
 
-/// Draws PSNR against time per frame or memory: one marker for each result, a Pareto front for each reflector.
-pub(crate) fn error_svg(results: &[MethodResult], axis: Axis) -> Result<String, ReportError> {
+/// Draws results that share their frames: a marker for each that has a place on this plot, and the Pareto front.
+pub(crate) fn svg(results: &[&MethodResult], plot: Plot, heading: &str) -> Result<String, ReportError> {
+    let results: Vec<&MethodResult> = results.iter().copied().filter(|result| plot.shows(result)).collect();
     let mut svg = String::new();
-    draw(results, axis, &mut svg).map_err(|error| ReportError::Plot(error.to_string()))?;
+    draw(&results, plot, heading, &mut svg).map_err(|error| ReportError::Plot(error.to_string()))?;
     Ok(svg)
 }
 
-fn draw(results: &[MethodResult], axis: Axis, svg: &mut String) -> Drawn {
+fn draw(results: &[&MethodResult], plot: Plot, heading: &str, svg: &mut String) -> Drawn {
     let root = SVGBackend::with_string(svg, SIZE).into_drawing_area();
     root.fill(&PAPER)?;
-    draw_title(&root, axis)?;
+    draw_title(&root, plot, heading)?;
 
-    let (range, db) = (axis.range(results), psnr_range(results));
+    let (range, heights) = (plot.costs(results), plot.heights(results));
     let x_axis = (range.0..range.1).log_scale().with_key_points(decade_ticks(range));
     let mut chart = ChartBuilder::on(&root)
         .margin_top(62)
@@ -70,7 +71,7 @@ fn draw(results: &[MethodResult], axis: Axis, svg: &mut String) -> Drawn {
         .margin_left(10)
         .x_label_area_size(52)
         .y_label_area_size(60)
-        .build_cartesian_2d(x_axis, db.0..db.1)?;
+        .build_cartesian_2d(x_axis, heights.0..heights.1)?;
     let small = font(LABEL_PX).color(&INK);
     chart
         .configure_mesh()
@@ -79,20 +80,18 @@ fn draw(results: &[MethodResult], axis: Axis, svg: &mut String) -> Drawn {
         .axis_style(FAINT_INK)
         .label_style(small.clone())
         .axis_desc_style(small)
-        .x_desc(axis.description())
-        .y_desc("PSNR, dB (mean of the eyes)")
+        .x_desc(plot.horizontal())
+        .y_desc(plot.vertical())
         .x_label_formatter(&|value| tick_label(*value))
-        .y_label_formatter(&|value| format!("{value:.0}"))
+        .y_label_formatter(&|value| plot.height_label(*value))
         .draw()?;
 
     let (columns, rows) = chart.plotting_area().get_pixel_range();
     let area = Rect { left: columns.start, top: rows.start, right: columns.end, bottom: rows.end };
-    let marks = marks(results, axis, &area, |x, psnr| chart.backend_coord(&(x, psnr)));
-    let fronts = front_lines(results, axis, &marks, &area);
-    for line in &fronts {
-        root.draw(&PathElement::new(line.clone(), FRONT.stroke_width(2)))?;
-    }
-    draw_labels(&root, &marks, &fronts, area)?;
+    let marks = marks(results, plot, &area, |x, y| chart.backend_coord(&(x, y)));
+    let front = front_line(results, plot, &marks, &area);
+    root.draw(&PathElement::new(front.clone(), FRONT.stroke_width(2)))?;
+    draw_labels(&root, &marks, &front, area)?;
     for mark in &marks {
         draw_mark(&root, mark, &area)?;
     }
@@ -100,10 +99,11 @@ fn draw(results: &[MethodResult], axis: Axis, svg: &mut String) -> Drawn {
     Ok(())
 }
 
-fn draw_title(root: &Area<'_>, axis: Axis) -> Drawn {
+fn draw_title(root: &Area<'_>, plot: Plot, heading: &str) -> Drawn {
     let title = font(TITLE_PX).style(FontStyle::Bold).color(&INK);
-    root.draw(&Text::new(axis.title(), (24, 12), title))?;
-    root.draw(&Text::new(axis.subtitle(), (24, 37), font(LABEL_PX).color(&FAINT_INK)))?;
+    let text = if heading.is_empty() { plot.title().to_owned() } else { format!("{}: {heading}", plot.title()) };
+    root.draw(&Text::new(text, (24, 12), title))?;
+    root.draw(&Text::new(plot.subtitle(), (24, 37), font(LABEL_PX).color(&FAINT_INK)))?;
     Ok(())
 }
 
@@ -112,45 +112,34 @@ fn font(px: f64) -> FontDesc<'static> {
     FontDesc::new(FontFamily::SansSerif, px * 1.24, FontStyle::Normal)
 }
 
-/// The finite errors' range, with room below for labels and above for the marks at the top edge.
-fn psnr_range(results: &[MethodResult]) -> (f64, f64) {
-    let finite = || results.iter().filter_map(MethodResult::mean_psnr_db).filter(|psnr| psnr.is_finite());
-    let Some(low) = finite().min_by(f64::total_cmp) else { return (0.0, 50.0) };
-    let high = finite().fold(low, f64::max);
-    let room = 0.15 * (high - low).max(6.0);
-    ((low - room).floor(), (high + 2.0 * room).ceil())
-}
-
 /// Position, look and label of every result.
-fn marks(results: &[MethodResult], axis: Axis, area: &Rect, pixel: impl Fn(f64, f64) -> (i32, i32)) -> Vec<Mark> {
-    let methods = distinct(results, |r| &r.method);
-    let reflectors = distinct(results, |r| &r.reflector);
-    let index = |names: &[&str], name: &str| names.iter().position(|n| *n == name).unwrap_or(0);
-    let mark = |result: &MethodResult| {
-        let psnr = result.mean_psnr_db().filter(|psnr| psnr.is_finite());
+fn marks(results: &[&MethodResult], plot: Plot, area: &Rect, pixel: impl Fn(f64, f64) -> (i32, i32)) -> Vec<Mark> {
+    let methods = distinct(results);
+    let mark = |result: &&MethodResult| {
+        let height = plot.height(result);
         let place = |value: f64| {
-            let (x, y) = pixel(value, psnr.unwrap_or(0.0));
-            (x, if psnr.is_some() { y } else { area.top + 2 * MARKER_RADIUS })
+            let (x, y) = pixel(value, height.unwrap_or(0.0));
+            (x, if height.is_some() { y } else { area.top + 2 * MARKER_RADIUS })
         };
-        let (q1, q3) = axis.spread(result);
-        let method = index(&methods, &result.method);
+        let (q1, q3) = plot.spread(result);
+        let method = methods.iter().position(|name| *name == result.method).unwrap_or(0);
         Mark {
-            at: place(axis.value(result)),
+            at: place(plot.cost(result)),
             quartiles: (place(q1), place(q3)),
             color: METHOD_COLORS[method % METHOD_COLORS.len()],
             // Where colours run out, another shape tells methods apart.
-            shape: index(&reflectors, &result.reflector) + method / METHOD_COLORS.len(),
-            label: label(results, result, axis, area),
-            at_top: psnr.is_none(),
+            shape: method / METHOD_COLORS.len(),
+            label: label(results, result, plot, area),
+            at_top: height.is_none(),
         }
     };
     results.iter().map(mark).collect()
 }
 
-/// The different names among the results, in order of appearance.
-fn distinct<'a>(results: &'a [MethodResult], name: impl Fn(&'a MethodResult) -> &'a str) -> Vec<&'a str> {
-    let mut names: Vec<&str> = Vec::new();
-    for name in results.iter().map(name) {
+/// The different methods among the results, in order of appearance.
+fn distinct<'a>(results: &[&'a MethodResult]) -> Vec<&'a str> {
+    let mut names = Vec::new();
+    for name in results.iter().map(|result| result.method.as_str()) {
         if !names.contains(&name) {
             names.push(name);
         }
@@ -158,22 +147,19 @@ fn distinct<'a>(results: &'a [MethodResult], name: impl Fn(&'a MethodResult) -> 
     names
 }
 
-/// The method; reflector, device and parameters only as far as these are needed to tell results apart. Long ones are cut.
-fn label(results: &[MethodResult], result: &MethodResult, axis: Axis, area: &Rect) -> String {
-    let twins = || results.iter().filter(|r| r.method == result.method && r.reflector == result.reflector);
+/// The method; device and parameters only as far as these are needed to tell results apart. Long ones are cut.
+fn label(results: &[&MethodResult], result: &MethodResult, plot: Plot, area: &Rect) -> String {
+    let twins = || results.iter().filter(|r| r.method == result.method);
     let mut parts = vec![result.method.as_str()];
-    if results.iter().any(|r| r.reflector != result.reflector) {
-        parts.push(&result.reflector);
-    }
     if twins().any(|r| r.device != result.device) {
         parts.push(&result.device);
     }
-    let same_device: Vec<&MethodResult> = twins().filter(|r| r.device == result.device).collect();
+    let same_device: Vec<&MethodResult> = twins().copied().filter(|r| r.device == result.device).collect();
     parts.extend(telling_parameters(result, &same_device));
     let mut text = parts.join(", ");
     if result.is_reference() {
-        text += &format!(": reference, {}", axis.text(result));
-    } else if result.mean_psnr_db().is_some_and(f64::is_infinite) {
+        text += &format!(": reference, {}", plot.text(result));
+    } else if plot.height(result).is_none() {
         text += ": no error";
     }
     let room = (f64::from(area.right - area.left) * 0.45 / letter_width()) as usize;
@@ -197,26 +183,22 @@ fn letter_width() -> f64 {
     0.58 * LABEL_PX
 }
 
-/// For each reflector the staircase over its undominated results, on to the right edge.
-fn front_lines(results: &[MethodResult], axis: Axis, marks: &[Mark], area: &Rect) -> Vec<Vec<(i32, i32)>> {
-    let front_of = |reflector: &str| {
-        let drawn: Vec<usize> =
-            (0..results.len()).filter(|&i| results[i].reflector == reflector && !marks[i].at_top).collect();
-        let points: Vec<(f64, f64)> =
-            drawn.iter().map(|&i| (axis.value(&results[i]), results[i].mean_psnr_db().unwrap_or(0.0))).collect();
-        let mut line: Vec<(i32, i32)> = Vec::new();
-        for at in pareto_front(&points).into_iter().map(|i| marks[drawn[i]].at) {
-            if let Some(&(_, y)) = line.last() {
-                line.push((at.0, y));
-            }
-            line.push(at);
-        }
+/// The staircase over the undominated results, on to the right edge.
+fn front_line(results: &[&MethodResult], plot: Plot, marks: &[Mark], area: &Rect) -> Vec<(i32, i32)> {
+    let drawn: Vec<usize> = (0..results.len()).filter(|&i| !marks[i].at_top).collect();
+    let point = |&i: &usize| (plot.cost(results[i]), plot.height(results[i]).unwrap_or(0.0));
+    let points: Vec<(f64, f64)> = drawn.iter().map(point).collect();
+    let mut line: Vec<(i32, i32)> = Vec::new();
+    for at in pareto_front(&points).into_iter().map(|i| marks[drawn[i]].at) {
         if let Some(&(_, y)) = line.last() {
-            line.push((area.right, y));
+            line.push((at.0, y));
         }
-        line
-    };
-    distinct(results, |r| &r.reflector).into_iter().map(front_of).filter(|line| !line.is_empty()).collect()
+        line.push(at);
+    }
+    if let Some(&(_, y)) = line.last() {
+        line.push((area.right, y));
+    }
+    line
 }
 
 fn draw_mark(root: &Area<'_>, mark: &Mark, area: &Rect) -> Drawn {
@@ -243,11 +225,11 @@ fn draw_mark(root: &Area<'_>, mark: &Mark, area: &Rect) -> Drawn {
     root.draw(&Polygon::new(outline, color.filled()))
 }
 
-fn draw_labels(root: &Area<'_>, marks: &[Mark], fronts: &[Vec<(i32, i32)>], area: Rect) -> Drawn {
+fn draw_labels(root: &Area<'_>, marks: &[Mark], front: &[(i32, i32)], area: Rect) -> Drawn {
     let markers = marks.iter().map(|mark| Rect::around(mark.at, MARKER_RADIUS + 1)).collect();
     let whiskers = marks.iter().map(|mark| Rect::spanned(mark.quartiles.0, mark.quartiles.1));
     let dashes = marks.iter().filter(|m| m.at_top).map(|m| Rect::spanned(m.at, (m.at.0, area.bottom)));
-    let stairs = fronts.iter().flat_map(|line| line.windows(2).map(|pair| Rect::spanned(pair[0], pair[1])));
+    let stairs = front.windows(2).map(|pair| Rect::spanned(pair[0], pair[1]));
     let mut placer = LabelPlacer::new(area, markers, whiskers.chain(dashes).chain(stairs).collect());
     let centered = font(LABEL_PX).color(&INK).pos(Pos::new(HPos::Center, VPos::Center));
     for mark in marks {
@@ -270,33 +252,40 @@ mod tests {
 
     #[test]
     fn svg_holds_every_label_and_closes_its_tags() {
-        let svg = error_svg(&sample::report().results, Axis::Time).unwrap();
-        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
-        for text in ["slabs, teapot", "environment map, sphere", "ray tracing, teapot: reference", "PSNR, dB"] {
-            assert!(svg.contains(text), "{text}");
+        let report = sample::report();
+        let results: Vec<&MethodResult> = report.results.iter().filter(|r| r.frames.reflector == "teapot").collect();
+        for plot in Plot::ALL {
+            let svg = svg(&results, plot, "teapot").unwrap();
+            assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+            assert!(svg.contains("slabs") && svg.contains(plot.title()) && svg.contains("teapot"), "{plot:?}");
+            // Elements either close themselves or are closed: <svg>, <text>.
+            let opened = svg.matches('<').count() - svg.matches("</").count() - svg.matches("/>").count();
+            assert_eq!(opened, svg.matches("</").count());
         }
-        // Elements either close themselves or are closed: <svg>, <text>.
-        let opened = svg.matches('<').count() - svg.matches("</").count() - svg.matches("/>").count();
-        assert_eq!(opened, svg.matches("</").count());
+        let time = svg(&results, Plot::Time, "").unwrap();
+        for text in ["environment map", "ray tracing: reference", "PSNR, dB"] {
+            assert!(time.contains(text), "{text}");
+        }
+        assert!(!svg(&results, Plot::Disk, "").unwrap().contains("ray tracing"));
     }
 
     #[test]
     fn odd_results_are_drawn_too() {
-        assert!(error_svg(&[], Axis::Time).unwrap().starts_with("<svg"));
+        assert!(svg(&[], Plot::Time, "").unwrap().starts_with("<svg"));
         let cases = [
             sample::result("a", "instant", &[20.0], 0.0),
             sample::result("a", "exact", &[f64::INFINITY], 1.0),
             sample::result("a", "reference alone", &[], 1e6),
-            sample::result("<b>", &"long ".repeat(100), &[-3.0, 99.0], 1e-12),
+            sample::result("<b>", &"long <b> ".repeat(100), &[-3.0, 99.0], 1e-12),
         ];
         for case in &cases {
-            for axis in [Axis::Time, Axis::Bytes] {
-                let svg = error_svg(std::slice::from_ref(case), axis).unwrap();
-                assert!(svg.starts_with("<svg") && svg.contains(axis.title()), "{}", case.method);
+            for plot in Plot::ALL {
+                let svg = svg(&[case], plot, "").unwrap();
+                assert!(svg.starts_with("<svg") && svg.contains(plot.title()), "{}", case.method);
             }
         }
-        let svg = error_svg(&cases, Axis::Time).unwrap();
-        assert!(!svg.contains("<b>") && svg.contains("exact, a: no error") && svg.contains('…'));
+        let svg = svg(&cases.iter().collect::<Vec<_>>(), Plot::Time, "<b>").unwrap();
+        assert!(!svg.contains("<b>") && svg.contains("exact: no error") && svg.contains('…'));
     }
 
     #[test]
@@ -307,12 +296,12 @@ mod tests {
             ..sample::result("a", "slabs", &[30.0], 1.0)
         };
         let mut results = vec![of("64², BC1; 4 steps"), of("64², BC1; 8 steps")];
-        let named = |results: &[MethodResult], i: usize| label(results, &results[i], Axis::Time, &area);
+        let named = |results: &[MethodResult], i: usize| {
+            label(&results.iter().collect::<Vec<_>>(), &results[i], Plot::Time, &area)
+        };
         assert_eq!([named(&results, 0), named(&results, 1)], ["slabs, 4 steps", "slabs, 8 steps"]);
         results[1].device = "GPU".to_owned();
         assert_eq!(named(&results, 1), "slabs, GPU");
         assert_eq!(named(&results[..1], 0), "slabs");
-        results[1].reflector = "b".to_owned();
-        assert_eq!(named(&results, 1), "slabs, b");
     }
 }

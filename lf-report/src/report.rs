@@ -2,14 +2,14 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::axis::Axis;
+use crate::axis::Plot;
 use crate::error::ReportError;
 use crate::machine::Machine;
-use crate::result::{BASELINE_METHOD, MethodResult};
-use crate::{html, plot, units};
+use crate::result::{BASELINE_METHOD, Frames, MethodResult};
+use crate::{csv, html, markdown, plot, units};
 
 /// Name and version of the JSON layout, its first property.
-const SCHEMA: &str = "lfslab-report/2";
+pub(crate) const SCHEMA: &str = "lfslab-report/3";
 
 /// Every result of one run, and where, how and on what it was measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -20,8 +20,6 @@ pub struct Report {
     pub generator: String,
     /// The machine that ran it.
     pub machine: Machine,
-    /// Name of the scene, or the file it came from.
-    pub scene: String,
     /// The command line that measures all of this again.
     pub reproduce: String,
     /// Named facts of the run: geometry, file size, capture time.
@@ -29,8 +27,23 @@ pub struct Report {
     pub facts: Vec<(String, String)>,
     /// What was measured, in the order of the tables.
     pub results: Vec<MethodResult>,
+    /// What else was found out, such as what was left out and what that saved.
+    pub tables: Vec<Table>,
     /// Remarks, one paragraph each: known limits, what was left out.
     pub notes: Vec<String>,
+}
+
+/// A table of the report beside its results, for people.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Table {
+    /// What it shows, in a few words.
+    pub title: String,
+    /// How to read it; may be empty.
+    pub caption: String,
+    /// Heads of the columns.
+    pub columns: Vec<String>,
+    /// Cells, each row as long as the heads.
+    pub rows: Vec<Vec<String>>,
 }
 
 /// An image of the HTML page.
@@ -40,11 +53,11 @@ pub struct Figure {
     pub title: String,
     /// How to read it; may be empty.
     pub caption: String,
-    /// A whole PNG file.
-    pub png: Vec<u8>,
+    /// A whole PNG or JPEG file.
+    pub picture: Vec<u8>,
 }
 
-/// The best result of a method set against the baseline: same reflector, same device.
+/// The best result of a method set against the baseline: same frames, same device.
 pub(crate) struct Comparison<'a> {
     best: &'a MethodResult,
     best_db: f64,
@@ -68,63 +81,78 @@ impl Report {
         serde_json::to_string_pretty(&Document { schema: SCHEMA, report: self }).map_err(ReportError::Json)
     }
 
-    /// PSNR against median time per frame as a standalone SVG image: one marker for each result with the quartiles of
-    /// its time, one Pareto front for each reflector. Results without finite error (the reference) stand at the top
-    /// edge with a dashed line down to the time axis.
+    /// The results as comma-separated values with a header line, a line for each; numbers of eyes are means.
+    ///
+    /// # Errors
+    /// As [`to_json`](Self::to_json).
+    pub fn to_csv(&self) -> Result<String, ReportError> {
+        self.validate()?;
+        csv::csv(&self.results)
+    }
+
+    /// One plot of the results on some frames as a standalone SVG image: a marker for each with the quartiles of its time, and the Pareto
+    /// front. Results without finite error (the reference) stand at the top edge with a dashed line down to the axis. `None`
+    /// where no result has a place on it.
     ///
     /// # Errors
     /// [`ReportError::InvalidArgument`] as for [`to_json`](Self::to_json); [`ReportError::Plot`] if drawing fails.
-    pub fn error_time_svg(&self) -> Result<String, ReportError> {
+    pub fn plot(&self, frames: &Frames, plot: Plot) -> Result<Option<String>, ReportError> {
         self.validate()?;
-        plot::error_svg(&self.results, Axis::Time)
+        let results = self.results_of(frames);
+        if !results.iter().any(|result| plot.shows(result)) {
+            return Ok(None);
+        }
+        plot::svg(&results, plot, &self.label(frames)).map(Some)
     }
 
-    /// PSNR against memory on the device, drawn as [`error_time_svg`](Self::error_time_svg) does.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn error_bytes_svg(&self) -> Result<String, ReportError> {
-        self.validate()?;
-        plot::error_svg(&self.results, Axis::Bytes)
+    /// What was drawn, in order of appearance.
+    #[must_use]
+    pub fn frames(&self) -> Vec<&Frames> {
+        let mut all = Vec::new();
+        for frames in self.results.iter().map(|result| &result.frames) {
+            if !all.contains(&frames) {
+                all.push(frames);
+            }
+        }
+        all
+    }
+
+    /// The results on some frames, in the order measured.
+    #[must_use]
+    pub fn results_of(&self, frames: &Frames) -> Vec<&MethodResult> {
+        self.results.iter().filter(|result| result.frames == *frames).collect()
+    }
+
+    /// Frames by name: the reflector, and of the rest what not all frames share.
+    #[must_use]
+    pub fn label(&self, frames: &Frames) -> String {
+        let all = self.frames();
+        let mut label = frames.reflector.clone();
+        if all.iter().any(|other| other.scene != frames.scene) {
+            label += &format!(" in {}", frames.scene);
+        }
+        if all.iter().any(|other| other.size != frames.size) {
+            label += &format!(", {}×{}", frames.size[0], frames.size[1]);
+        }
+        label
     }
 
     /// The report as one HTML page that needs no other file, with `figures` embedded in the order given.
     ///
     /// # Errors
-    /// As [`error_time_svg`](Self::error_time_svg); also if a figure is not a PNG file.
+    /// As [`plot`](Self::plot); also if a figure is neither a PNG nor a JPEG file.
     pub fn to_html(&self, figures: &[Figure]) -> Result<String, ReportError> {
         html::page(self, figures)
     }
 
-    /// The results as a Markdown table.
+    /// The results as Markdown, a table for each frames: error, time, bytes, and on which fronts of its device a method lies. Then
+    /// the other tables.
     #[must_use]
-    pub fn to_markdown_table(&self) -> String {
-        let mut text = "| reflector | method | PSNR, dB: mean (min–max) | ms per frame: median [quartiles] \
-                        | on device | on disk | preparation | parameters | device |\n\
-                        |---|---|--:|--:|--:|--:|--:|---|---|\n"
-            .to_owned();
-        for result in &self.results {
-            let [psnr, range] = psnr_texts(result);
-            let [median, quartiles] = time_texts(result);
-            let psnr = if range.is_empty() { psnr } else { format!("{psnr} ({range})") };
-            let cells = [
-                result.reflector.clone(),
-                result.method.clone(),
-                psnr,
-                format!("{median} [{quartiles}]"),
-                units::bytes(result.bytes_on_device),
-                result.bytes_on_disk.map_or_else(|| "–".to_owned(), units::bytes),
-                units::duration(result.preparation_s),
-                result.parameters.clone(),
-                result.device.clone(),
-            ];
-            let escaped = cells.map(|cell| cell.replace('|', "\\|").replace(['\n', '\r'], " "));
-            text += &format!("| {} |\n", escaped.join(" | "));
-        }
-        text
+    pub fn to_markdown(&self) -> String {
+        markdown::page(self)
     }
 
-    /// For each reflector (and device), one sentence: how much closer to the reference the best method comes than the
+    /// For all frames (and devices), one sentence: how much closer to the reference the best method comes than the
     /// [`BASELINE_METHOD`], and what that costs. Empty if nothing was compared with the baseline.
     #[must_use]
     pub fn headlines(&self) -> Vec<String> {
@@ -142,14 +170,14 @@ impl Report {
             1 => "one eye".to_owned(),
             n => format!("mean of {n} eyes"),
         };
-        let references = self.results.iter().filter(|r| r.is_reference() && r.reflector == best.reflector);
+        let references = self.results.iter().filter(|r| r.is_reference() && r.frames == best.frames);
         let fastest = references.map(|r| r.timing.median()).min_by(f64::total_cmp);
         let reference =
             fastest.map_or_else(String::new, |s| format!("; the reference takes {} ms", units::milliseconds(s)));
         format!(
             "{reflector}{device}: {amount} dB {direction} with {method} than with {BASELINE_METHOD} \
              ({best} against {base} dB PSNR, {eyes}), at {time} ms a frame against {base_time} ms{reference}.",
-            reflector = best.reflector,
+            reflector = self.label(&best.frames),
             method = best.method,
             best = units::decibels(*best_db, 1),
             base = units::decibels(*baseline_db, 1),
@@ -158,16 +186,16 @@ impl Report {
         )
     }
 
-    /// The best of each reflector and device against the best baseline there, in order of appearance.
+    /// The best of all frames and devices against the best baseline there, in order of appearance.
     fn comparisons(&self) -> Vec<Comparison<'_>> {
-        let mut groups: Vec<(&str, &str)> = Vec::new();
-        for group in self.results.iter().map(|r| (r.reflector.as_str(), r.device.as_str())) {
+        let mut groups: Vec<(&Frames, &str)> = Vec::new();
+        for group in self.results.iter().map(|r| (&r.frames, r.device.as_str())) {
             if !groups.contains(&group) {
                 groups.push(group);
             }
         }
-        let best_of = |group: (&str, &str), baseline: bool| {
-            let members = self.results.iter().filter(move |r| (r.reflector.as_str(), r.device.as_str()) == group);
+        let best_of = |group: (&Frames, &str), baseline: bool| {
+            let members = self.results.iter().filter(move |r| (&r.frames, r.device.as_str()) == group);
             let kind = members.filter(move |r| (r.method == BASELINE_METHOD) == baseline);
             kind.filter_map(|r| Some((r, r.mean_psnr_db()?))).max_by(|a, b| a.1.total_cmp(&b.1))
         };

@@ -10,6 +10,17 @@ use crate::timing::Timing;
 /// Name of the method that the others are compared with in the headline: reflections looked up by direction alone.
 pub const BASELINE_METHOD: &str = "environment map";
 
+/// What was drawn: results are only compared where all of this is the same.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Frames {
+    /// Name of the scene, or the file it came from.
+    pub scene: String,
+    /// The reflector's name, such as `teapot`, and where it stands if there are several places.
+    pub reflector: String,
+    /// Width and height of the pictures in pixels.
+    pub size: [u32; 2],
+}
+
 /// How far one eye's image is from the reference, over the reflector's pixels, on 8-bit display values.
 ///
 /// An infinite `psnr_db` (no difference at all: `mse` is 0) becomes `null` in JSON, which has no infinity.
@@ -68,11 +79,11 @@ impl EyeError {
 
 /// One method with one set of parameters on one reflector: error, time and bytes.
 ///
-/// Serialises as its fields, `mean_psnr_db` and `mean_flip`.
+/// Serialises as its fields, those of `frames` among them, and the means over the eyes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodResult {
-    /// The reflector's name, such as `teapot`.
-    pub reflector: String,
+    /// What was drawn.
+    pub frames: Frames,
     /// The method's name, such as `slabs`, `ray tracing` or [`BASELINE_METHOD`].
     pub method: String,
     /// What the method was run with, for people to read: `16×16 cameras of 64×64, BC1`.
@@ -89,6 +100,8 @@ pub struct MethodResult {
     pub bytes_on_disk: Option<u64>,
     /// Seconds spent once before the first frame: capturing, encoding, building.
     pub preparation_s: f64,
+    /// Rays traced for it; `None` if it is not made of samples, or nobody counted.
+    pub rays: Option<u64>,
 }
 
 impl MethodResult {
@@ -127,7 +140,7 @@ impl MethodResult {
     /// Refuses numbers that would be nonsense on a plot or in JSON.
     pub(crate) fn validate(&self) -> Result<(), ReportError> {
         let refuse = |what: String, why: String| {
-            let what = format!("{what} of {} on {}", self.method, self.reflector);
+            let what = format!("{what} of {} on {}", self.method, self.frames.reflector);
             Err(ReportError::InvalidArgument { what, why })
         };
         if !(self.preparation_s.is_finite() && self.preparation_s >= 0.0) {
@@ -156,18 +169,23 @@ impl MethodResult {
 
 impl Serialize for MethodResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("MethodResult", 11)?;
-        fields.serialize_field("reflector", &self.reflector)?;
+        let mut fields = serializer.serialize_struct("MethodResult", 16)?;
+        fields.serialize_field("scene", &self.frames.scene)?;
+        fields.serialize_field("reflector", &self.frames.reflector)?;
+        fields.serialize_field("size", &self.frames.size)?;
         fields.serialize_field("method", &self.method)?;
         fields.serialize_field("parameters", &self.parameters)?;
         fields.serialize_field("device", &self.device)?;
         fields.serialize_field("mean_psnr_db", &self.mean_psnr_db())?;
+        fields.serialize_field("mean_rel_mse", &self.mean(|eye| eye.rel_mse))?;
+        fields.serialize_field("mean_ssim", &self.mean(|eye| eye.ssim))?;
         fields.serialize_field("mean_flip", &self.mean_flip())?;
         fields.serialize_field("eyes", &self.eyes)?;
         fields.serialize_field("timing", &self.timing)?;
         fields.serialize_field("bytes_on_device", &self.bytes_on_device)?;
         fields.serialize_field("bytes_on_disk", &self.bytes_on_disk)?;
         fields.serialize_field("preparation_s", &self.preparation_s)?;
+        fields.serialize_field("rays", &self.rays)?;
         fields.end()
     }
 }

@@ -3,8 +3,8 @@
 use lf_math::{ImageError, VisibleError};
 
 use crate::machine::Machine;
-use crate::report::Report;
-use crate::result::{EyeError, MethodResult};
+use crate::report::{Report, Table};
+use crate::result::{EyeError, Frames, MethodResult};
 use crate::timing::Timing;
 
 /// A result with the given PSNR of each eye and frames of about `seconds`.
@@ -15,7 +15,7 @@ pub(crate) fn result(reflector: &str, method: &str, psnr_db: &[f64], seconds: f6
         EyeError { psnr_db: psnr, ..EyeError::new(eye, error, VisibleError { flip: 0.0625, ssim: 0.75 }) }
     };
     MethodResult {
-        reflector: reflector.to_owned(),
+        frames: Frames { scene: "museum".to_owned(), reflector: reflector.to_owned(), size: [512; 2] },
         method: method.to_owned(),
         parameters: "16×16 cameras of 64×64".to_owned(),
         device: "CPU, 2 threads".to_owned(),
@@ -24,6 +24,7 @@ pub(crate) fn result(reflector: &str, method: &str, psnr_db: &[f64], seconds: f6
         bytes_on_device: 6 << 20,
         bytes_on_disk: (!psnr_db.is_empty()).then_some(1_234_567),
         preparation_s: 12.3,
+        rays: (!psnr_db.is_empty()).then_some(6_000_000),
     }
 }
 
@@ -39,7 +40,6 @@ pub(crate) fn report() -> Report {
             os: "linux x86_64".to_owned(),
             build_profile: "release".to_owned(),
         },
-        scene: "museum".to_owned(),
         reproduce: "lfslab demo --out lfslab-demo".to_owned(),
         facts: vec![("Slabs".to_owned(), "6 × 16×16 cameras".to_owned())],
         results: vec![
@@ -50,6 +50,12 @@ pub(crate) fn report() -> Report {
             result("teapot", "environment map", &[20.1, 20.5], 0.0040),
             result("teapot", "slabs", &[28.9, 28.5], 0.0129),
         ],
+        tables: vec![Table {
+            title: "Left out".to_owned(),
+            caption: "In bytes.".to_owned(),
+            columns: vec!["what".to_owned(), "saves".to_owned()],
+            rows: vec![vec!["a|b".to_owned(), "3".to_owned()]],
+        }],
         notes: vec!["Times are wall clock.".to_owned()],
     }
 }

@@ -1,7 +1,11 @@
 //! The report as others see it: JSON against its schema, headlines, the Markdown table.
 
-use lf_report::{BASELINE_METHOD, EyeError, Machine, MethodResult, Report, ReportError, Timing};
+use lf_report::{BASELINE_METHOD, EyeError, Frames, Machine, MethodResult, Plot, Report, ReportError, Table, Timing};
 use serde_json::Value;
+
+fn frames(scene: &str, reflector: &str, size: u32) -> Frames {
+    Frames { scene: scene.to_owned(), reflector: reflector.to_owned(), size: [size; 2] }
+}
 
 fn result(reflector: &str, method: &str, device: &str, psnr_db: &[f64], ms: f64) -> MethodResult {
     let eye = |(eye, &psnr_db): (usize, &f64)| EyeError {
@@ -16,7 +20,7 @@ fn result(reflector: &str, method: &str, device: &str, psnr_db: &[f64], ms: f64)
         pixels: 1000,
     };
     MethodResult {
-        reflector: reflector.to_owned(),
+        frames: frames("museum", reflector, 512),
         method: method.to_owned(),
         parameters: "16×16".to_owned(),
         device: device.to_owned(),
@@ -25,6 +29,7 @@ fn result(reflector: &str, method: &str, device: &str, psnr_db: &[f64], ms: f64)
         bytes_on_device: 1 << 20,
         bytes_on_disk: (!psnr_db.is_empty()).then_some(2048),
         preparation_s: 2.5,
+        rays: None,
     }
 }
 
@@ -33,10 +38,15 @@ fn report(results: Vec<MethodResult>) -> Report {
         title: "Title".to_owned(),
         generator: "program 1.0".to_owned(),
         machine: Machine::detect(Some("Adapter".to_owned())),
-        scene: "museum".to_owned(),
         reproduce: "program run".to_owned(),
         facts: vec![("Size".to_owned(), "1 m".to_owned())],
         results,
+        tables: vec![Table {
+            title: "Left out".to_owned(),
+            caption: String::new(),
+            columns: vec!["what".to_owned()],
+            rows: vec![vec!["slots".to_owned()]],
+        }],
         notes: vec!["Note.".to_owned()],
     }
 }
@@ -99,7 +109,7 @@ fn json_has_exactly_the_properties_of_the_schema() {
     for report in [with_nulls, report(vec![result("teapot", BASELINE_METHOD, "GPU", &[20.0], 1.0)])] {
         let json = report.to_json().unwrap();
         check(&serde_json::from_str(&json).unwrap(), &schema, "report");
-        assert!(json.starts_with("{\n  \"schema\": \"lfslab-report/2\""), "{json}");
+        assert!(json.starts_with("{\n  \"schema\": \"lfslab-report/3\""), "{json}");
     }
 }
 
@@ -117,7 +127,8 @@ fn infinite_psnr_is_null_and_so_is_its_mean() {
 fn numbers_that_json_cannot_hold_are_refused() {
     let mut report = report(vec![result("teapot", "slabs", "CPU", &[30.0], 10.0)]);
     report.results[0].eyes[0].mse = f64::NAN;
-    for outcome in [report.to_json(), report.to_html(&[]), report.error_time_svg(), report.error_bytes_svg()] {
+    let plot = report.plot(&report.results[0].frames, Plot::Time).map(Option::unwrap_or_default);
+    for outcome in [report.to_json(), report.to_csv(), report.to_html(&[]), plot] {
         let Err(ReportError::InvalidArgument { what, .. }) = outcome else { panic!("{outcome:?}") };
         assert_eq!(what, "mean squared error of eye 0 of slabs on teapot");
     }
@@ -145,16 +156,19 @@ fn headlines_compare_on_the_same_reflector_and_device() {
 }
 
 #[test]
-fn markdown_table_has_a_row_for_each_result() {
-    let table = report(vec![
-        result("a|b", "slabs", "CPU\nx", &[30.0, 32.0], 10.0),
-        result("a", "ray tracing", "CPU", &[], 300.0),
-    ])
-    .to_markdown_table();
-    let lines: Vec<&str> = table.lines().collect();
-    assert_eq!(lines.len(), 4);
-    let first =
-        "| a\\|b | slabs | 31.00 (30.00–32.00) | 10.0 [10.0–10.0] | 1.00 MiB | 2.00 KiB | 2.50 s | 16×16 | CPU x |";
-    assert_eq!(lines[2], first);
-    assert!(lines[3].starts_with("| a | ray tracing | reference | 300 [300–300] | 1.00 MiB | – |"), "{}", lines[3]);
+fn frames_are_named_by_what_they_do_not_share() {
+    let at = |frames: Frames| MethodResult { frames, ..result("teapot", "slabs", "CPU", &[30.0], 10.0) };
+    let mut report = report(vec![at(frames("museum", "teapot", 512)), at(frames("museum", "sphere", 512))]);
+    let labels = |report: &Report| -> Vec<String> { report.frames().into_iter().map(|f| report.label(f)).collect() };
+    assert_eq!(labels(&report), ["teapot", "sphere"]);
+    report.results.push(at(frames("corridor", "sphere", 256)));
+    assert_eq!(
+        labels(&report),
+        ["teapot in museum, 512×512", "sphere in museum, 512×512", "sphere in corridor, 256×256"]
+    );
+    assert_eq!(report.results_of(&frames("museum", "sphere", 512)).len(), 1);
+    assert_eq!(report.to_markdown().matches("| method | parameters |").count(), 3);
+    // Nobody counted rays.
+    assert!(report.plot(&report.results[0].frames, Plot::Capture).unwrap().is_none());
+    assert!(report.plot(&report.results[0].frames, Plot::Disk).unwrap().is_some());
 }

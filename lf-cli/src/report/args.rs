@@ -1,33 +1,46 @@
-//! The command line of `lfslab methods`.
+//! The command line of `lfslab report`.
 
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
 
+use super::spec::Preset;
 use crate::args::CellArg;
 use crate::scene_args::{LightArgs, SceneArgs};
 
 #[derive(Debug, Args)]
-pub(crate) struct MethodsArgs {
+pub(crate) struct ReportArgs {
+    /// What to measure (.toml, laid out like what --print writes), or a finished report (.json) to hold to --check
+    #[arg(value_name = "SPEC", conflicts_with = "preset")]
+    pub(crate) spec: Option<PathBuf>,
+    /// A report that comes with the program [default: quick]
+    #[arg(long, value_enum)]
+    pub(crate) preset: Option<Preset>,
+    /// Write the preset's TOML and measure nothing
+    #[arg(long)]
+    pub(crate) print: bool,
     /// Folder for the results; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "lfslab-methods")]
+    #[arg(long, value_name = "DIR", default_value = "lfslab-report")]
     pub(crate) out: PathBuf,
-    /// Scenes to compare in, one after the other: embedded ones (museum, corridor, mirror-box, forest, beside) or glTF files, each with the
-    /// centre and edge length of its cell in metres if another than its own is wanted
-    #[arg(value_name = "NAME|FILE[@X,Y,Z,SIZE]", default_values = ["museum", "mirror-box", "corridor"])]
+    /// An earlier report.json: say what got worse by more than the noise, and fail if anything did
+    #[arg(long, value_name = "JSON")]
+    pub(crate) check: Option<PathBuf>,
+    /// Other scenes than the report's: embedded ones (museum, corridor, mirror-box, forest, beside) or glTF files, each with the centre and
+    /// edge length of its cell in metres if another than its own is wanted. May be given several times
+    #[arg(long = "scene", value_name = "NAME|FILE[@X,Y,Z,SIZE]")]
     pub(crate) scenes: Vec<ScenePlace>,
     #[command(flatten)]
     pub(crate) light: LightArgs,
-    /// Only methods that need at most this much of the device, in MB
-    #[arg(long, value_name = "MB", default_value_t = 60.0, value_parser = budget)]
-    pub(crate) budget: f64,
-    /// How many eyes look at the sphere, evenly around it
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=64))]
-    pub(crate) eyes: u32,
-    /// Width and height of the pictures in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(16..=4096))]
-    pub(crate) size: u32,
+    /// Only methods that need at most this much of the device, in MB, instead of the report's budget
+    #[arg(long, value_name = "MB")]
+    pub(crate) budget: Option<f64>,
+    /// Another number of eyes that look at each reflector, evenly around it
+    #[arg(long, value_name = "N")]
+    pub(crate) eyes: Option<u32>,
+    /// One other width and height of the pictures, in pixels
+    #[arg(long, value_name = "PIXELS")]
+    pub(crate) size: Option<u32>,
     /// Samples of each ray of the traced pictures, which the others are measured against [default: 16 times --samples, 1 where nothing
     /// is random]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -61,11 +74,6 @@ impl FromStr for ScenePlace {
         };
         Ok(Self { scene: scene.to_owned(), cell })
     }
-}
-
-fn budget(text: &str) -> Result<f64, String> {
-    let parsed = text.trim().parse().ok().filter(|megabytes| (0.5..=4000.0).contains(megabytes));
-    parsed.ok_or_else(|| "expected a number from 0.5 to 4000".to_owned())
 }
 
 #[cfg(test)]
