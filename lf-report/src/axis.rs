@@ -109,6 +109,21 @@ impl Plot {
         if self == Self::Capture { (low, high) } else { (low.floor(), high.ceil()) }
     }
 
+    /// Round heights in a range.
+    pub(crate) fn height_ticks(self, (low, high): (f64, f64)) -> Vec<f64> {
+        if self == Self::Capture {
+            return decade_ticks((10f64.powf(low), 10f64.powf(high))).into_iter().map(f64::log10).collect();
+        }
+        let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| (high - low) / step <= 10.0).unwrap_or(50.0);
+        let first = (low / step).ceil();
+        (0..=((high / step).floor() - first) as i32).map(|i| step * (first + f64::from(i))).collect()
+    }
+
+    /// Whether two results are one point of this plot: what was captured once serves every device and search.
+    pub(crate) fn same(self, a: &MethodResult, b: &MethodResult) -> bool {
+        self == Self::Capture && a.method == b.method && a.preparation_s == b.preparation_s && a.rays == b.rays
+    }
+
     /// Where a result lies.
     pub(crate) fn cost(self, result: &MethodResult) -> f64 {
         match self {
@@ -206,6 +221,8 @@ mod tests {
         assert_eq!(Plot::Capture.height(&of(Some(100_000_000))), Some(2.0));
         assert_eq!(Plot::Capture.height_label(2.0), "100");
         assert!(!Plot::Capture.shows(&of(None)) && !Plot::Capture.shows(&of(Some(0))));
+        assert_eq!(Plot::Capture.height_ticks((-0.1, 1.1)), [1.0f64, 2.0, 5.0, 10.0].map(f64::log10));
+        assert_eq!(Plot::Time.height_ticks((12.0, 40.0)), [15.0, 20.0, 25.0, 30.0, 35.0, 40.0]);
         let (low, high) = Plot::Capture.heights(&[&of(Some(1_000_000)), &of(Some(10_000_000))]);
         assert!(low < 0.0 && high > 1.0);
     }

@@ -1,7 +1,11 @@
 //! The plots of a report, drawn with plotters' SVG backend.
 
+use std::ops::Range;
+
 use plotters::coord::Shift;
 use plotters::coord::combinators::{BindKeyPoints, IntoLogRange};
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
+use plotters::coord::types::RangedCoordf64;
 use plotters::drawing::DrawingAreaErrorKind;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -49,11 +53,39 @@ struct Mark {
     at_top: bool,
 }
 
+/// A linear axis with ticks of our own: plotters binds those to logarithmic ones only.
+struct Heights {
+    range: RangedCoordf64,
+    ticks: Vec<f64>,
+}
+
+impl Ranged for Heights {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        self.range.map(value, limit)
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
+        self.ticks.clone()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.range.range()
+    }
+}
+
 /// Draws results that share their frames: a marker for each that has a place on this plot, and the Pareto front.
 pub(crate) fn svg(results: &[&MethodResult], plot: Plot, heading: &str) -> Result<String, ReportError> {
-    let results: Vec<&MethodResult> = results.iter().copied().filter(|result| plot.shows(result)).collect();
+    let mut shown: Vec<&MethodResult> = vec![];
+    for &result in results.iter().filter(|result| plot.shows(result)) {
+        if !shown.iter().any(|other| plot.same(other, result)) {
+            shown.push(result);
+        }
+    }
     let mut svg = String::new();
-    draw(&results, plot, heading, &mut svg).map_err(|error| ReportError::Plot(error.to_string()))?;
+    draw(&shown, plot, heading, &mut svg).map_err(|error| ReportError::Plot(error.to_string()))?;
     Ok(svg)
 }
 
@@ -71,7 +103,10 @@ fn draw(results: &[&MethodResult], plot: Plot, heading: &str, svg: &mut String) 
         .margin_left(10)
         .x_label_area_size(52)
         .y_label_area_size(60)
-        .build_cartesian_2d(x_axis, heights.0..heights.1)?;
+        .build_cartesian_2d(
+            x_axis,
+            Heights { range: (heights.0..heights.1).into(), ticks: plot.height_ticks(heights) },
+        )?;
     let small = font(LABEL_PX).color(&INK);
     chart
         .configure_mesh()
