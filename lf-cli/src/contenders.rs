@@ -10,11 +10,9 @@ use anyhow::Result;
 use glam::Vec3;
 use lf_capture::Options;
 use lf_compress::bc1::Quality;
-use lf_compress::{PackOptions, PackedCube, PackedLightField};
+use lf_compress::{DepthGuide, GuidedCubes, PackOptions, PackedCube, PackedLightField};
 use lf_gpu::{CubePicture, Gpu, GpuError, Proxy, ReflectionPass, SlabTexture, Storage};
-use lf_ibr::{
-    BlockField, BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, SphereCube,
-};
+use lf_ibr::{BlockField, BoxCube, CubeField, DistanceField, Environment, GuidedField, ProbeField, SphereCube};
 use lf_math::{Coverage, DistanceCube, LightFieldGeometry, PlanePlacement, Search};
 use lf_scene::{capture_distance_cube, capture_inverse_depths, focus};
 
@@ -32,6 +30,8 @@ const SEARCHES: [(Search, &str); 2] = [
 ];
 /// Steps along the ray in eight cubes.
 const PROBE_STEPS: [u32; 2] = [64, 128];
+/// Halvings of the step in which it ends.
+const PROBE_HALVINGS: u32 = 6;
 /// Eight probes stand at the corners of a cube this large, of the cell's size.
 const PROBES_AT: f32 = 0.7;
 /// One of the guided cubes stands in the middle, four at corners of a cube this large.
@@ -81,13 +81,13 @@ pub(crate) fn contenders(source: &Source, budget: &Budget<'_>, gpu: Option<&Gpu>
     let mut within = |contender: &Contender<'_>| if contender.bytes <= budget.bytes { each(contender) } else { Ok(()) };
     one_cube(source, budget, gpu, &mut within)?;
     for megabytes in budget.sizes() {
-        probes(source, megabytes, &mut within)?;
+        probes(source, megabytes, gpu, &mut within)?;
     }
     for preset in [Preset::Small, Preset::Paper] {
         slabs(source, budget, preset, gpu, &mut within)?;
     }
     for megabytes in budget.sizes() {
-        guided(source, megabytes, &mut within)?;
+        guided(source, megabytes, gpu, &mut within)?;
     }
     Ok(())
 }
@@ -118,73 +118,77 @@ fn one_cube(source: &Source, budget: &Budget<'_>, gpu: Option<&Gpu>, each: &mut 
         hand("distance cube", format!("{size}, depth blocks; {steps}"), packed.bytes(), &field)?;
     }
     let Some(gpu) = gpu else { return Ok(()) };
-    let mut hand = |name, parameters: String, bytes: u64, pass: Result<ReflectionPass, GpuError>| {
+    let mut hand = |name, parameters: String, pass: Result<ReflectionPass, GpuError>| {
         let pass = pass?;
-        each(&Contender { name, parameters, bytes, on_disk: None, preparation_s, drawn: Drawn::OnGpu(gpu, &pass) })
+        let (bytes, drawn) = (pass.bytes(), Drawn::OnGpu(gpu, &pass));
+        each(&Contender { name, parameters, bytes, on_disk: None, preparation_s, drawn })
     };
     let map = CubePicture::from(&packed);
-    let (map_bytes, depth_bytes) = (map.bytes(gpu), (packed.bytes() - picture) as u64);
-    let size = format!("{edge}², {}", if map.stays_blocks(gpu) { "BC1" } else { "RGBA8" });
+    let size = format!("{edge}², {}", texels_on(gpu, &packed));
     let proxy = |proxy| ReflectionPass::proxy(gpu, map, Vec3::ZERO, proxy);
-    hand(lf_report::BASELINE_METHOD, size.clone(), map_bytes, ReflectionPass::environment(gpu, map))?;
-    hand("sphere-projected map", size.clone(), map_bytes, proxy(Proxy::Sphere(cube.median_distance())))?;
-    hand("box-projected map", size.clone(), map_bytes, proxy(Proxy::Box(cube.median_box())))?;
+    hand(lf_report::BASELINE_METHOD, size.clone(), ReflectionPass::environment(gpu, map))?;
+    hand("sphere-projected map", size.clone(), proxy(Proxy::Sphere(cube.median_distance())))?;
+    hand("box-projected map", size.clone(), proxy(Proxy::Box(cube.median_box())))?;
     for (search, steps) in SEARCHES {
         let pass = ReflectionPass::packed_distance_cube(gpu, &packed, search);
-        hand("distance cube", format!("{size}, depth blocks; {steps}"), map_bytes + depth_bytes, pass)?;
+        hand("distance cube", format!("{size}, depth blocks; {steps}"), pass)?;
     }
     Ok(())
 }
 
+/// How a device holds the colours of a cube.
+fn texels_on(gpu: &Gpu, cube: &PackedCube) -> &'static str {
+    if CubePicture::from(cube).stays_blocks(gpu) { "BC1" } else { "RGBA8" }
+}
+
 /// Eight distance cubes, as many texels as fit.
-fn probes(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
+fn probes(source: &Source, megabytes: f64, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
     let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0;
     let places = (0..8).map(|i| PROBES_AT * corner(i) * source.cell.half_extent());
     // From this many bytes on one ray a texel is traced, not four: that would take minutes.
     let grid = if megabytes > 20.0 { 1 } else { 2 };
     let set = CubeSet::capture(source, &places.collect::<Vec<_>>(), megabytes * 1e6, grid)?;
     let cubes = set.decode()?;
+    let mut hand = |texels, steps, bytes, drawn: Drawn<'_>| {
+        let (size, rays) = (set.size, set.rays);
+        let parameters =
+            format!("{size}², {texels}, depth blocks; {steps} steps, {PROBE_HALVINGS} halvings; rays a texel: {rays}");
+        let (name, preparation_s) = ("8 distance cubes", set.preparation_s);
+        each(&Contender { name, parameters, bytes, on_disk: None, preparation_s, drawn })
+    };
     for steps in PROBE_STEPS {
-        let field = ProbeField::new(cubes.clone(), steps, 6)?;
-        each(&Contender {
-            name: "8 distance cubes",
-            parameters: format!(
-                "{}², BC1, depth blocks; {steps} steps, 6 halvings; rays a texel: {}",
-                set.size, set.rays
-            ),
-            bytes: set.bytes,
-            on_disk: None,
-            preparation_s: set.preparation_s,
-            drawn: Drawn::OnCpu(&field),
-        })?;
+        let field = ProbeField::new(cubes.clone(), steps, PROBE_HALVINGS)?;
+        hand("BC1", steps, set.bytes, Drawn::OnCpu(&field))?;
+    }
+    for (gpu, steps) in gpu.into_iter().flat_map(|gpu| PROBE_STEPS.map(|steps| (gpu, steps))) {
+        let pass = ReflectionPass::probes(gpu, &set.cubes, steps, PROBE_HALVINGS)?;
+        hand(texels_on(gpu, &set.cubes[0]), steps, pass.bytes(), Drawn::OnGpu(gpu, &pass))?;
     }
     Ok(())
 }
 
 /// Five distance cubes and a guide.
-fn guided(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
+fn guided(source: &Source, megabytes: f64, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
     let start = Instant::now();
     let [cameras, resolution] = GUIDE;
     let geometry = LightFieldGeometry::around(source.cell, PlanePlacement::CellCenter, cameras, resolution)?;
     let geometry = focus(&source.tracer, &geometry)?;
     let guide = DepthGuide::new(geometry.clone(), &capture_inverse_depths(&source.tracer, &geometry)?)?;
     let guide_s = start.elapsed().as_secs_f64();
-    let guide_bytes = guide.bytes() as u64;
     let corners = [[0.0; 3], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     let places = corners.map(|corner| GUIDED_AT * Vec3::from(corner) * source.cell.half_extent());
-    let set = CubeSet::capture(source, &places, megabytes * 1e6 - guide_bytes as f64, GUIDED_GRID)?;
-    let field = GuidedField::new(&set.cubes, guide)?;
-    each(&Contender {
-        name: "guided cubes (ours)",
-        parameters: format!(
-            "5 × {}², BC1, depth blocks; guide {cameras}²×{resolution}²; rays a texel: {}",
-            set.size, set.rays
-        ),
-        bytes: set.bytes + guide_bytes,
-        on_disk: None,
-        preparation_s: guide_s + set.preparation_s,
-        drawn: Drawn::OnCpu(&field),
-    })
+    let set = CubeSet::capture(source, &places, megabytes * 1e6 - guide.bytes() as f64, GUIDED_GRID)?;
+    let (size, rays, preparation_s) = (set.size, set.rays, guide_s + set.preparation_s);
+    let data = GuidedCubes::new(set.cubes, guide)?;
+    let mut hand = |texels, bytes, drawn: Drawn<'_>| {
+        let parameters =
+            format!("5 × {size}², {texels}, depth blocks; guide {cameras}²×{resolution}²; rays a texel: {rays}");
+        each(&Contender { name: "guided cubes (ours)", parameters, bytes, on_disk: None, preparation_s, drawn })
+    };
+    hand("BC1", data.bytes() as u64, Drawn::OnCpu(&GuidedField::new(&data)))?;
+    let Some(gpu) = gpu else { return Ok(()) };
+    let pass = ReflectionPass::guided(gpu, &data)?;
+    hand(texels_on(gpu, &data.cubes()[0]), pass.bytes(), Drawn::OnGpu(gpu, &pass))
 }
 
 /// Slabs of a preset, on the CPU and in every form that the device can hold.
