@@ -4,7 +4,7 @@
 //! * [`volume`]: the place of every camera image in one volume texture.
 //! * [`PackedLightField`]: a light field as encoded tiles, one per volume slice: made from texels or read from a
 //!   container, uploaded to a GPU as it is or decoded again.
-//! * [`planes`]: images of inverse depth, two planes a block.
+//! * [`planes`]: images of inverse depth, two planes a block; [`PackedCube`]: cubes of them and of BC1, and [`GuidedCubes`] with slabs of depth.
 //! * [`tile`]: lossless packing of BC1 tiles for the file, and blocks that pack better.
 //!
 //! Tiles of other encodings are packed by zstd, one frame each. Light fields too large for memory are made tile by tile:
@@ -16,6 +16,7 @@ pub mod bc1;
 mod check;
 mod error;
 mod file;
+mod guide;
 mod packed;
 mod packed_cube;
 mod picture;
@@ -29,6 +30,7 @@ mod zstd_tile;
 pub use check::check_tile;
 pub use error::PackError;
 pub use file::{decode_into, pack_tile, unpack_into};
+pub use guide::{DepthGuide, GuidedCubes};
 /// The container crate, whose types the packed light field speaks.
 pub use lf_format as format;
 pub use packed::{PackOptions, PackedLightField, encode_linear_tile, encode_tile};

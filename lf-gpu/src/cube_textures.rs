@@ -1,14 +1,13 @@
-//! What cube maps and distance cubes are made of on the device.
+//! The pictures and depths of cubes on the device.
 
 use half::f16;
-use lf_compress::planes::{PlaneBlock, PlaneImage};
 use lf_compress::{PackedCube, bc1};
 use lf_math::{CubeMap, Image};
 use wgpu::util::DeviceExt;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::buffer;
+use crate::plane_blocks::PlaneBlocks;
 
 /// The pictures of a cube map, as they go to the device.
 #[derive(Debug, Clone, Copy)]
@@ -51,33 +50,61 @@ impl CubePicture<'_> {
     /// Whether it stays BC1 blocks on a device.
     #[must_use]
     pub fn stays_blocks(&self, gpu: &Gpu) -> bool {
-        let sampled = gpu.device.features().contains(wgpu::Features::TEXTURE_COMPRESSION_BC);
-        matches!(self, Self::Blocks(cube) if sampled && cube.size().is_multiple_of(4))
+        matches!(self, Self::Blocks(cube) if keeps_blocks(gpu, cube.size()))
     }
 
     pub(crate) fn upload(&self, gpu: &Gpu) -> Result<wgpu::TextureView, GpuError> {
-        gpu.affords("the cube map".to_owned(), self.bytes(gpu))?;
-        let (format, bytes) = match self {
-            Self::Blocks(cube) if self.stays_blocks(gpu) => {
-                (wgpu::TextureFormat::Bc1RgbaUnorm, cube.radiance().concat())
-            }
-            Self::Blocks(cube) => (wgpu::TextureFormat::Rgba8Unorm, decoded(cube)?),
+        let dimension = wgpu::TextureViewDimension::Cube;
+        match self {
+            Self::Blocks(cube) => upload_pictures(gpu, std::slice::from_ref(*cube), dimension),
             Self::Texels(cube) => {
                 let texels = cube.faces().iter().flat_map(|face| face.texels().as_flattened());
-                (wgpu::TextureFormat::Rgba8Unorm, texels.copied().collect())
+                let bytes = &texels.copied().collect::<Vec<u8>>();
+                let (size, format) = (cube.size(), wgpu::TextureFormat::Rgba8Unorm);
+                Faces { what: PICTURES, size, count: 6, format, bytes, dimension }.upload(gpu)
             }
-        };
-        gpu.checked("the cube map", || texture(gpu, self.size(), format, &bytes))
+        }
     }
 }
 
-fn decoded(cube: &PackedCube) -> Result<Vec<u8>, GpuError> {
+/// Name of colours in errors.
+const PICTURES: &str = "the cube map";
+
+/// Square images of one size and how a shader sees them: as cubes or as an array.
+struct Faces<'a> {
+    what: &'static str,
+    size: u32,
+    count: u32,
+    format: wgpu::TextureFormat,
+    bytes: &'a [u8],
+    dimension: wgpu::TextureViewDimension,
+}
+
+/// Whether blocks of faces of so many texels along an edge can be sampled.
+fn keeps_blocks(gpu: &Gpu, size: u32) -> bool {
+    gpu.device.features().contains(wgpu::Features::TEXTURE_COMPRESSION_BC) && size.is_multiple_of(4)
+}
+
+/// The pictures of cubes of one size, of which there must be one, in a texture of six layers for each.
+pub(crate) fn upload_pictures(
+    gpu: &Gpu,
+    cubes: &[PackedCube],
+    dimension: wgpu::TextureViewDimension,
+) -> Result<wgpu::TextureView, GpuError> {
+    let (size, count) = (cubes[0].size(), 6 * cubes.len() as u32);
+    let pictures = cubes.iter().flat_map(PackedCube::radiance);
     let mut bytes = Vec::new();
-    for blocks in cube.radiance() {
-        let texels = bc1::decode_image(cube.size(), cube.size(), blocks).map_err(lf_compress::PackError::from)?;
-        bytes.extend_from_slice(texels.as_flattened());
-    }
-    Ok(bytes)
+    let format = if keeps_blocks(gpu, size) {
+        bytes.extend(pictures.flatten());
+        wgpu::TextureFormat::Bc1RgbaUnorm
+    } else {
+        for blocks in pictures {
+            let texels = bc1::decode_image(size, size, blocks).map_err(lf_compress::PackError::from)?;
+            bytes.extend_from_slice(texels.as_flattened());
+        }
+        wgpu::TextureFormat::Rgba8Unorm
+    };
+    Faces { what: PICTURES, size, count, format, bytes: &bytes, dimension }.upload(gpu)
 }
 
 /// The inverse depths of a distance cube, as they go to the device.
@@ -86,13 +113,13 @@ pub(crate) enum CubeDepths<'a> {
     /// As half floats in a cube texture.
     Values(&'a [Image<f32>; 6]),
     /// As blocks of two planes in a buffer.
-    Planes(&'a [PlaneImage; 6]),
+    Planes(&'a PackedCube),
 }
 
 /// Depths on the device.
 pub(crate) enum DeviceDepths {
     Texture(wgpu::TextureView),
-    Buffer(wgpu::Buffer),
+    Blocks(PlaneBlocks),
 }
 
 impl CubeDepths<'_> {
@@ -100,46 +127,42 @@ impl CubeDepths<'_> {
     pub(crate) fn size(&self) -> u32 {
         match self {
             Self::Values(faces) => faces[0].width(),
-            Self::Planes(faces) => faces[0].width(),
+            Self::Planes(cube) => cube.inverse_depths()[0].width(),
         }
     }
 
     pub(crate) fn upload(&self, gpu: &Gpu) -> Result<DeviceDepths, GpuError> {
-        gpu.checked("the depths of a distance cube", || match self {
+        match self {
             Self::Values(faces) => {
                 let half = |inverse: &f32| f16::from_f32(inverse.min(f16::MAX.to_f32())).to_bits();
                 let texels: Vec<u16> = faces.iter().flat_map(|face| face.texels().iter().map(half)).collect();
-                let bytes = bytemuck::cast_slice(&texels);
-                DeviceDepths::Texture(texture(gpu, self.size(), wgpu::TextureFormat::R16Float, bytes))
+                let (format, bytes) = (wgpu::TextureFormat::R16Float, bytemuck::cast_slice(&texels));
+                let (what, dimension) = ("the depths of a distance cube", wgpu::TextureViewDimension::Cube);
+                let faces = Faces { what, size: self.size(), count: 6, format, bytes, dimension };
+                Ok(DeviceDepths::Texture(faces.upload(gpu)?))
             }
-            Self::Planes(faces) => {
-                DeviceDepths::Buffer(buffer(gpu, "depths", &plane_words(faces), wgpu::BufferUsages::STORAGE))
-            }
-        })
+            Self::Planes(cube) => Ok(DeviceDepths::Blocks(PlaneBlocks::upload(gpu, std::slice::from_ref(*cube))?)),
+        }
     }
 }
 
-/// The scale of each face, then the blocks, face after face. Mirrored by depth_blocks.wgsl.
-fn plane_words(faces: &[PlaneImage; 6]) -> Vec<u8> {
-    let scales = faces.iter().flat_map(|face| face.scale().to_le_bytes());
-    let blocks = faces.iter().flat_map(PlaneImage::blocks).flat_map(PlaneBlock::to_bytes);
-    scales.chain(blocks).collect()
-}
-
-/// A cube texture of the faces in order.
-fn texture(gpu: &Gpu, size: u32, format: wgpu::TextureFormat, bytes: &[u8]) -> wgpu::TextureView {
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("cube map"),
-        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 6 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
-    let dimension = Some(wgpu::TextureViewDimension::Cube);
-    texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
+impl Faces<'_> {
+    fn upload(&self, gpu: &Gpu) -> Result<wgpu::TextureView, GpuError> {
+        gpu.affords(self.what.to_owned(), self.bytes.len() as u64)?;
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some(self.what),
+            size: wgpu::Extent3d { width: self.size, height: self.size, depth_or_array_layers: self.count },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: self.format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        };
+        let view = wgpu::TextureViewDescriptor { dimension: Some(self.dimension), ..Default::default() };
+        let order = wgpu::util::TextureDataOrder::LayerMajor;
+        gpu.checked(self.what, || {
+            gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, self.bytes).create_view(&view)
+        })
+    }
 }

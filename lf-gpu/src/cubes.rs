@@ -9,6 +9,7 @@ use crate::cube_textures::{CubeDepths, CubePicture, DeviceDepths};
 use crate::error::GpuError;
 use crate::gpu::Gpu;
 use crate::pass::{ReflectionPass, bilinear_sampler, buffer};
+use crate::plane_blocks::PLANE_BLOCKS;
 use crate::shader::Shader;
 
 /// What a cube map is projected on, cell space.
@@ -56,10 +57,10 @@ pub(crate) struct CubeUniform {
 impl Depths {
     fn source(self) -> String {
         let stored = match self {
-            Self::Texture => include_str!("shaders/depth_texture.wgsl"),
-            Self::Blocks => include_str!("shaders/depth_blocks.wgsl"),
+            Self::Texture => include_str!("shaders/depth_texture.wgsl").to_owned(),
+            Self::Blocks => PLANE_BLOCKS.concat() + include_str!("shaders/depth_blocks.wgsl"),
         };
-        [stored, include_str!("shaders/depths.wgsl")].concat()
+        stored + include_str!("shaders/depths.wgsl")
     }
 }
 
@@ -82,7 +83,10 @@ impl CubeShader {
             Self::Sphere => [cube, include_str!("shaders/sphere.wgsl")].concat(),
             Self::Box => [cube, include_str!("shaders/box.wgsl")].concat(),
             Self::FixedPoint(depths) => [cube, &depths.source(), include_str!("shaders/fixed_point.wgsl")].concat(),
-            Self::March(depths) => [cube, &depths.source(), include_str!("shaders/march.wgsl")].concat(),
+            Self::March(depths) => {
+                let march = [include_str!("shaders/crossing.wgsl"), include_str!("shaders/march.wgsl")];
+                [cube, &depths.source(), &march.concat()].concat()
+            }
         }
     }
 }
@@ -135,13 +139,12 @@ impl ReflectionPass {
         Self::searched(gpu, cube, picture, depths, search)
     }
 
-    /// Reflections from a distance cube whose depths stay in blocks, its colours where the device samples those. It takes the
-    /// bytes of the [picture](CubePicture::bytes) and of the blocks of depths.
+    /// Reflections from a distance cube whose depths stay in blocks, its colours where the device samples those.
     ///
     /// # Errors
     /// If the device refuses the cube texture, the buffer or the pipeline.
     pub fn packed_distance_cube(gpu: &Gpu, cube: &PackedCube, search: Search) -> Result<Self, GpuError> {
-        Self::searched(gpu, &cube.decode()?, cube.into(), CubeDepths::Planes(cube.inverse_depths()), search)
+        Self::searched(gpu, &cube.decode()?, cube.into(), CubeDepths::Planes(cube), search)
     }
 
     fn searched(
@@ -186,7 +189,7 @@ impl ReflectionPass {
                     resources.push((4, wgpu::BindingResource::TextureView(depths)));
                     resources.push((5, wgpu::BindingResource::Sampler(&nearest)));
                 }
-                Some(DeviceDepths::Buffer(depths)) => resources.push((4, depths.as_entire_binding())),
+                Some(DeviceDepths::Blocks(depths)) => resources.extend(depths.bindings()),
                 None => {}
             }
             Self::new(gpu, Shader::Cube(shader), &resources)

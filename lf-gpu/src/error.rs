@@ -56,6 +56,9 @@ pub enum GpuError {
         /// What the device says.
         why: String,
     },
+    /// What was given has not the shape that is needed.
+    #[error(transparent)]
+    Geometry(#[from] lf_math::GeometryError),
     /// The texels of a light field could not be decoded for upload.
     #[error(transparent)]
     Decode(#[from] lf_compress::PackError),

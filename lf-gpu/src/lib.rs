@@ -5,7 +5,8 @@
 //! [`ReflectionPass`] draws a [`MirrorMesh`] into a [`Target`]; a [`SlabRenderer`] draws whole [`Frame`]s: any number of placed,
 //! tinted [`Reflector`]s and the scene behind them, in one pass or the paper's two ([`StuvBuffer`]). One pass, four hardware-bilinear fetches a pixel, for the
 //! slabs (Figs. 6 and 8 of Yu, Yang & McMillan); one fetch for the environment map, also where it is projected on a sphere or a box
-//! ([`Proxy`]); a distance cube takes a fetch for each step of its [`lf_math::Search`].
+//! ([`Proxy`]); a distance cube takes a fetch for each step of its [`lf_math::Search`], and so do several of them ([`ReflectionPass::probes`]);
+//! guided cubes ([`ReflectionPass::guided`]) take few steps, each of several fetches.
 //!
 //! Every shader has a readable twin in `lf-ibr`, and holds only what a light field and a frame need. Cost is the shaded pixels times the
 //! fetches: the scene does not matter, the mirror by its vertices, and by triangles so small that adapters shade pixels beside them.
@@ -20,8 +21,10 @@ mod frame;
 mod gpu;
 mod layers;
 mod pass;
+mod plane_blocks;
 mod probe;
 mod relief;
+mod several_cubes;
 mod shader;
 mod slab_texture;
 mod storage;

@@ -7,6 +7,7 @@ use crate::error::GpuError;
 use crate::gpu::Gpu;
 use crate::shader::{Finish, Part, Relief, Shader, shader_source};
 use crate::slab_texture::SlabTexture;
+use crate::storage::slice_bytes;
 use crate::stuv::StuvBuffer;
 use crate::target::Target;
 use crate::uniforms::{FrameUniform, InstanceUniform};
@@ -25,6 +26,7 @@ pub struct ReflectionPass {
     pipeline: wgpu::RenderPipeline,
     bindings: wgpu::BindGroup,
     frame: wgpu::Buffer,
+    bytes: u64,
 }
 
 /// Sampler of all passes: bilinear, clamped, no mip levels. Bilinear across depth too, where slices are met centrally.
@@ -114,7 +116,14 @@ impl ReflectionPass {
         let own = [(0, frame.as_entire_binding()), (6, instances.as_entire_binding())];
         let all = own.into_iter().chain(resources.iter().cloned());
         let bindings = bind_group(gpu, &pipeline, all);
-        Self { pipeline, bindings, frame }
+        let bytes = resources.iter().map(|(_, resource)| allocated(resource)).sum();
+        Self { pipeline, bindings, frame, bytes }
+    }
+
+    /// Bytes of the textures and buffers on the device that hold what is reflected.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// Submits one frame: clears the target to transparent black and draws the mirror as `camera` sees it. The target
@@ -142,6 +151,19 @@ impl ReflectionPass {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.bindings, &[]);
         mesh.draw(&mut pass, 0);
+    }
+}
+
+/// Bytes of a texture or a buffer.
+fn allocated(resource: &wgpu::BindingResource<'_>) -> u64 {
+    match resource {
+        wgpu::BindingResource::TextureView(view) => {
+            let texture = view.texture();
+            let slice = slice_bytes(texture.format(), [texture.width(), texture.height()]);
+            slice * u64::from(texture.depth_or_array_layers())
+        }
+        wgpu::BindingResource::Buffer(binding) => binding.buffer.size(),
+        _ => 0,
     }
 }
 

@@ -3,6 +3,7 @@
 use lf_math::{Face, LightFieldGeometry, View};
 
 use crate::cubes::CubeShader;
+use crate::several_cubes::{guided_source, probes_source};
 use crate::storage::Storage;
 
 /// What light is looked up in.
@@ -10,6 +11,8 @@ use crate::storage::Storage;
 pub(crate) enum Shader {
     Slabs(SlabShader),
     Cube(CubeShader),
+    Probes,
+    Guided,
     /// White, to tell what a frame costs beside its reflections.
     Flat,
 }
@@ -89,7 +92,9 @@ impl SlabShader {
         };
         let focus =
             if self.focused { include_str!("shaders/focused.wgsl") } else { include_str!("shaders/unfocused.wgsl") };
-        [include_str!("shaders/slabs.wgsl"), &face, storage, &self.windows.source(), focus].concat()
+        let axis = include_str!("shaders/dominant_axis.wgsl");
+        let geometry = include_str!("shaders/slab_geometry.wgsl");
+        [axis, geometry, &face, include_str!("shaders/slabs.wgsl"), storage, &self.windows.source(), focus].concat()
     }
 }
 
@@ -109,6 +114,8 @@ impl Shader {
         match self {
             Self::Slabs(slabs) => slabs.source(),
             Self::Cube(cube) => cube.source(),
+            Self::Probes => probes_source(),
+            Self::Guided => guided_source(),
             Self::Flat => include_str!("shaders/flat.wgsl").to_owned(),
         }
     }

@@ -38,6 +38,14 @@ impl fmt::Display for Storage {
     }
 }
 
+/// Bytes of a slice of a texture.
+pub(crate) fn slice_bytes(format: wgpu::TextureFormat, [width, height]: [u32; 2]) -> u64 {
+    let (across, down) = format.block_dimensions();
+    let blocks = u64::from(width.div_ceil(across)) * u64::from(height.div_ceil(down));
+    // None only of depth and stencil.
+    blocks * u64::from(format.block_copy_size(None).unwrap_or(0))
+}
+
 /// A form that a device can hold a light field in.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plan {

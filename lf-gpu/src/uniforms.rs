@@ -2,8 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3};
-use lf_compress::PackedLightField;
 use lf_compress::volume::SlabLayout;
+use lf_compress::{DepthGuide, PackedLightField};
 use lf_math::{Pinhole, Placement, Reflectance, Slab};
 
 use crate::layers::Layers;
@@ -118,10 +118,22 @@ impl SlabsUniform {
         }
         uniform
     }
+
+    /// Where the slabs of a guide lie, and their texels in guide.wgsl.
+    pub(crate) fn of_guide(guide: &DepthGuide) -> Self {
+        let (mut uniform, mut first) = (Self::zeroed(), 0);
+        for (number, slab) in guide.geometry().slabs().iter().enumerate() {
+            let place = SlabUniform { table: [first, 0, 0, 0], ..SlabUniform::of(slab) };
+            uniform.faces[usize::from(slab.face().index())] = place;
+            first += guide.inverse_depths(number).len() as u32;
+        }
+        uniform
+    }
 }
 
 impl SlabUniform {
-    fn new(slab: &Slab, layout: &SlabLayout, place: TablePlace) -> Self {
+    /// Its geometry.
+    fn of(slab: &Slab) -> Self {
         let ([s, t], [u, v]) = (slab.st(), slab.uv());
         Self {
             st_first: Vec2::new(s.first(), t.first()),
@@ -133,13 +145,19 @@ impl SlabUniform {
             disparity: slab.disparity(),
             plane: slab.plane(),
             present: 1,
+            ..Self::zeroed()
+        }
+    }
+
+    fn new(slab: &Slab, layout: &SlabLayout, place: TablePlace) -> Self {
+        Self {
             // Whole numbers far below 2²⁴, which floats hold exactly; vector units have no integer division.
             pitch: slab.resolution().map(|texels| texels.next_multiple_of(4) as f32).into(),
             cameras_per_slice: layout.tiling().cameras_per_tile().map(|cameras| cameras as f32).into(),
             slices_per_group: Vec2::new(1.0, layout.groups()[0] as f32),
             first_slice: layout.first_slice() as f32,
-            padding: 0.0,
             table: [place.columns, place.rows, place.mask, 0],
+            ..Self::of(slab)
         }
     }
 }
@@ -150,7 +168,10 @@ mod tests {
     use std::mem::{offset_of, size_of};
 
     use crate::cubes::{CubeShader, CubeUniform, Depths};
+    use crate::plane_blocks::CubeEntry;
+    use crate::several_cubes::{GuidedUniform, MarchUniform};
     use crate::shader::{Finish, Part, Relief, Shader, SlabShader, shader_source};
+    use lf_compress::planes::PlaneBlock;
     use lf_math::View;
 
     /// Offsets of a WGSL struct's members and its size, as naga lays it out.
@@ -167,11 +188,11 @@ mod tests {
     #[test]
     fn every_shader_is_valid() {
         use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
-        /// `unpack2x16float`, which only old OpenGL lacks.
-        const HALF_FLOATS: Capabilities = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+        /// `unpack2x16float`, which only old OpenGL lacks, and arrays of cube textures, which WebGPU promises.
+        const NEEDED: Capabilities = Capabilities::SHADER_FLOAT16_IN_FLOAT32.union(Capabilities::CUBE_ARRAY_TEXTURES);
         let validate = |shader, part| {
             let module = parsed(&shader_source(shader, part));
-            Validator::new(ValidationFlags::all(), HALF_FLOATS).validate(&module).expect("valid");
+            Validator::new(ValidationFlags::all(), NEEDED).validate(&module).expect("valid");
         };
         for (slabs, part) in
             SlabShader::all().into_iter().flat_map(|slabs| Part::all().into_iter().map(move |p| (slabs, p)))
@@ -179,9 +200,10 @@ mod tests {
             validate(Shader::Slabs(slabs), part);
         }
         validate(Shader::Flat, Part::Mirror(Finish::Bare, Relief::Smooth));
-        for cube in CubeShader::ALL {
+        let cubes = CubeShader::ALL.map(Shader::Cube);
+        for shader in cubes.into_iter().chain([Shader::Probes, Shader::Guided]) {
             for finish in [Finish::Bare, Finish::Tint, Finish::Fresnel] {
-                validate(Shader::Cube(cube), Part::Mirror(finish, Relief::Smooth));
+                validate(shader, Part::Mirror(finish, Relief::Smooth));
             }
         }
     }
@@ -266,5 +288,12 @@ mod tests {
             depth_size,
             padding
         );
+        let bare = Part::Mirror(Finish::Bare, Relief::Smooth);
+        let module = parsed(&shader_source(Shader::Probes, bare));
+        same_layout!(&module, "March", MarchUniform, near, far, steps, halvings);
+        same_layout!(&module, "DistanceCube", CubeEntry, position, size, scales, first_block, padding);
+        assert_eq!(reflected(&module, "PlaneBlock").1 as usize, PlaneBlock::BYTES);
+        let module = parsed(&shader_source(Shader::Guided, bare));
+        same_layout!(&module, "Guided", GuidedUniform, half_extent, reach, far, padding_x, padding_y, padding_z);
     }
 }

@@ -1,93 +1,41 @@
 //! Slabs of inverse depth that tell a ray roughly where it ends.
 
 use glam::Vec2;
-use half::f16;
-use lf_math::{GeometryError, LightFieldGeometry, Ray, Slab, SlabTexels};
+use lf_compress::DepthGuide;
+use lf_math::{Ray, Slab};
 
-/// The largest half float: what stands on the camera plane has no inverse depth.
-const MAX: f32 = 65504.0;
-
-/// A light field of inverse depths: 1/m along the face's axis from the camera plane, negative behind it, 0 where nothing is met.
-#[derive(Debug, Clone)]
-pub struct DepthGuide {
-    geometry: LightFieldGeometry,
-    texels: Vec<SlabTexels<f16>>,
-}
-
-impl DepthGuide {
-    /// A guide with the inverse depths of each slab.
-    ///
-    /// # Errors
-    /// There must be whole images for every slab, with its numbers of cameras and texels. They are rounded to half floats.
-    pub fn new(geometry: LightFieldGeometry, texels: &[SlabTexels<f32>]) -> Result<Self, GeometryError> {
-        let expected = geometry.slabs().len();
-        if texels.len() != expected {
-            return Err(GeometryError::Length { what: "guide slabs", len: texels.len(), expected });
-        }
-        for (slab, texels) in geometry.slabs().iter().zip(texels) {
-            texels.check(slab)?;
-            let whole = slab.cameras().iter().chain(&slab.resolution()).map(|&n| n as usize).product();
-            if texels.texels().len() != whole {
-                return Err(GeometryError::Length {
-                    what: "guide texels",
-                    len: texels.texels().len(),
-                    expected: whole,
-                });
+/// The nearest and the farthest end of the stored rays around one of unit direction that starts in the cell: how far along it, metres.
+/// `None` if none of them ends in front of it.
+///
+/// From each of the four cameras around it: first the depth at the place that the focal plane says, then, at the place that
+/// this depth says, the four texels around.
+#[must_use]
+pub fn guide_ends(guide: &DepthGuide, ray: &Ray) -> Option<[f32; 2]> {
+    let indexed = guide.geometry().index_ray(ray)?;
+    let (slab, texels) = (&guide.geometry().slabs()[indexed.slab], guide.inverse_depths(indexed.slab));
+    let disparity = slab.disparity_at(1.0);
+    let last = slab.resolution().map(|n| n - 1);
+    let mut ends = [f32::INFINITY, f32::NEG_INFINITY];
+    for tap in slab.taps(&indexed.coord) {
+        let camera = Vec2::new(tap.camera[0] as f32, tap.camera[1] as f32);
+        let number = (tap.camera[1] * slab.cameras()[0] + tap.camera[0]) as usize;
+        let size = slab.resolution().map(|n| n as usize);
+        let image = &texels[number * size[0] * size[1]..];
+        let texel = |u: u32, v: u32| image[v.min(last[1]) as usize * size[0] + u.min(last[0]) as usize].to_f32();
+        let first = texel((tap.uv.x + 0.5) as u32, (tap.uv.y + 0.5) as u32);
+        // Casts of what is out of range, or not a number, saturate.
+        let place = indexed.coord.uv + disparity * first * (indexed.coord.st - camera);
+        let [u, v] = [place.x.max(0.0) as u32, place.y.max(0.0) as u32];
+        let around =
+            [(u, v), (u.saturating_add(1), v), (u, v.saturating_add(1)), (u.saturating_add(1), v.saturating_add(1))];
+        for inverse in around.map(|(u, v)| texel(u, v)) {
+            let end = end(slab, ray, inverse);
+            if end > 0.0 {
+                ends = [ends[0].min(end), ends[1].max(end)];
             }
         }
-        let rounded = |texels: &SlabTexels<f32>| texels.map(|inverse| f16::from_f32(inverse.clamp(-MAX, MAX)));
-        Ok(Self { geometry, texels: texels.iter().map(rounded).collect() })
     }
-
-    /// Bytes of the half floats.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
-        self.texels.iter().map(|texels| 2 * texels.texels().len()).sum()
-    }
-
-    /// The cell and the slabs.
-    #[must_use]
-    pub fn geometry(&self) -> &LightFieldGeometry {
-        &self.geometry
-    }
-
-    /// The nearest and the farthest end of the stored rays around one of unit direction that starts in the cell: how far along it, metres.
-    /// `None` if none of them ends in front of it.
-    ///
-    /// From each of the four cameras around it: first the depth at the place that the focal plane says, then, at the place that
-    /// this depth says, the four texels around.
-    #[must_use]
-    pub fn ends(&self, ray: &Ray) -> Option<[f32; 2]> {
-        let indexed = self.geometry.index_ray(ray)?;
-        let (slab, texels) = (&self.geometry.slabs()[indexed.slab], &self.texels[indexed.slab]);
-        let disparity = slab.disparity_at(1.0);
-        let last = slab.resolution().map(|n| n - 1);
-        let mut ends = [f32::INFINITY, f32::NEG_INFINITY];
-        for tap in slab.taps(&indexed.coord) {
-            let camera = Vec2::new(tap.camera[0] as f32, tap.camera[1] as f32);
-            let number = (tap.camera[1] * slab.cameras()[0] + tap.camera[0]) as usize;
-            let size = slab.resolution().map(|n| n as usize);
-            let image = &texels.texels()[number * size[0] * size[1]..];
-            let texel = |u: u32, v: u32| image[v.min(last[1]) as usize * size[0] + u.min(last[0]) as usize].to_f32();
-            let first = texel((tap.uv.x + 0.5) as u32, (tap.uv.y + 0.5) as u32);
-            // Casts of what is out of range, or not a number, saturate.
-            let place = indexed.coord.uv + disparity * first * (indexed.coord.st - camera);
-            let [u, v] = [place.x.max(0.0) as u32, place.y.max(0.0) as u32];
-            let around = [
-                (u, v),
-                (u.saturating_add(1), v),
-                (u, v.saturating_add(1)),
-                (u.saturating_add(1), v.saturating_add(1)),
-            ];
-            for inverse in around.map(|(u, v)| texel(u, v)) {
-                let end = end(slab, ray, inverse);
-                if end > 0.0 {
-                    ends = [ends[0].min(end), ends[1].max(end)];
-                }
-            }
-        }
-        (ends[0] <= ends[1]).then_some(ends)
-    }
+    (ends[0] <= ends[1]).then_some(ends)
 }
 
 /// How far along a ray it reaches an inverse depth: infinite for 0.

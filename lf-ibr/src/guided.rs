@@ -2,16 +2,16 @@
 //!
 //! The slabs of the paper answer a ray at once, but store each place of the scene many times over, and so few texels of it each time.
 //! A few cubes store it sharply, but do not know which of their texels a ray asks for. Here slabs that hold nothing but
-//! inverse depth, and little of that, say where the ray ends to within a bracket ([`DepthGuide`]). Within it the ray meets planes that
+//! inverse depth, and little of that, say where the ray ends to within a bracket ([`guide_ends`]). Within it the ray meets planes that
 //! the cubes show, in closed form; the cubes vote on where it ends; and the texels around that place, of all cubes, are blended
 //! by how near to it on the surface they lie.
 
 use glam::Vec3;
-use lf_compress::PackedCube;
-use lf_math::{GeometryError, Ray, normalized};
+use lf_compress::{DepthGuide, GuidedCubes};
+use lf_math::{Ray, normalized};
 
 use crate::frame::Environment;
-use crate::guide::DepthGuide;
+use crate::guide::guide_ends;
 use crate::surface::{Blend, SurfaceCube};
 
 /// The bracket reaches this share of the distance from the cell's centre beyond what the guide's texels say: the surface goes on
@@ -38,8 +38,6 @@ const SEEN: f32 = 0.01;
 const ALONE: f32 = 0.02;
 /// At most the discord that is accepted at last: one cube must see the place well.
 const DISCORD: f32 = ALONE + 5e-3;
-/// What is infinitely far is taken to be at least this many times as far as rays start from cubes: they all see it in one direction.
-const SKY: f32 = 1e3;
 
 /// Reflections from distance cubes and a guide.
 #[derive(Debug, Clone)]
@@ -54,19 +52,16 @@ pub struct GuidedField {
 }
 
 impl GuidedField {
-    /// Reflections from these cubes, found by the guide.
-    ///
-    /// # Errors
-    /// There must be at least one cube, and as many texels of depth in each as of its picture.
-    pub fn new(cubes: &[PackedCube], guide: DepthGuide) -> Result<Self, GeometryError> {
-        let sizes = cubes.iter().map(PackedCube::size);
-        let texels = sizes.max().ok_or(GeometryError::ZeroCount { what: "number of cubes" })?;
-        // Rays start anywhere in the cell, at most this far from a cube.
-        let reach = |cube: &PackedCube| (cube.position().abs() + guide.geometry().cell().half_extent()).length();
-        let apart = cubes.iter().map(reach).fold(0.0, f32::max);
-        let depths = cubes.iter().map(PackedCube::largest_depth).fold(0.0, f32::max);
-        let cubes = cubes.iter().map(SurfaceCube::new).collect::<Result<_, _>>()?;
-        Ok(Self { cubes, apart, texels: 0.5 * texels as f32, far: (4.0 * depths).max(SKY * apart), guide })
+    /// Reflections from these cubes, found by their guide.
+    #[must_use]
+    pub fn new(data: &GuidedCubes) -> Self {
+        Self {
+            cubes: data.cubes().iter().map(SurfaceCube::new).collect(),
+            guide: data.guide().clone(),
+            apart: data.reach(),
+            texels: 0.5 * data.size() as f32,
+            far: data.far(),
+        }
     }
 
     /// Where a ray of unit direction ends, cell space.
@@ -76,7 +71,7 @@ impl GuidedField {
         let far = self.far.max(2.0 * leave);
         let mut search = Search { field: self, ray, seeing: 0 };
         let mut from = leave;
-        if let Some([near, end]) = self.guide.ends(ray) {
+        if let Some([near, end]) = guide_ends(&self.guide, ray) {
             let margin = |t: f32| MARGIN * (t + leave);
             let bracket = [(near - margin(near)).clamp(leave, far), (end + margin(end)).clamp(leave, far)];
             // If its near end is not free, what the guide saw is not the first thing on the way.
@@ -139,7 +134,8 @@ impl Search<'_> {
         let step = (near.recip() - far.recip()) / count as f32;
         let mut last = near;
         for i in 1..=count {
-            let next = (near.recip() - i as f32 * step).recip();
+            // The last of many small steps may round to beyond infinity.
+            let next = (near.recip() - i as f32 * step).max(far.recip()).recip();
             if !self.is_free(next)
                 && let Some(found) = self.agreed([last, next])
             {
@@ -151,15 +147,14 @@ impl Search<'_> {
     }
 
     /// The place in a step on which the cubes agree best; none if it is hidden from all, but nothing is there.
-    fn agreed(&mut self, step: [f32; 2]) -> Option<f32> {
-        let [mut free, mut hidden] = step;
+    fn agreed(&mut self, [mut free, mut hidden]: [f32; 2]) -> Option<f32> {
         let slack = 0.5 * (hidden - free);
+        let span = [(free - slack).max(0.0), hidden + slack];
         let (mut best, mut least) = (hidden, f32::INFINITY);
         for _ in 0..HALVINGS {
             for cube in &self.field.cubes {
                 let met = cube.meets(self.ray, self.ray.at(hidden));
-                // Not so of what is not a number.
-                if met >= step[0] - slack && met <= step[1] + slack {
+                if met >= span[0] && met <= span[1] {
                     let discord = self.discord(met);
                     if discord < EXACT {
                         return Some(met);

@@ -45,7 +45,7 @@ pub use distance::{DistanceField, ProbeField};
 pub use focus::{ImageFocus, PlaneError, focus_from_images};
 pub use frame::{Environment, reflect_frame};
 pub use gbuffer::{Fragment, GBuffer};
-pub use guide::DepthGuide;
+pub use guide::guide_ends;
 pub use guided::GuidedField;
 pub use holdout::{HoldOut, LeftOut, hold_out};
 pub use proxy::{BoxCube, SphereCube};

@@ -7,10 +7,13 @@ use glam::{Vec2, Vec3};
 use lf_compress::PackedCube;
 use lf_compress::bc1::{BLOCK_BYTES, decode_texel};
 use lf_compress::planes::{BLOCK_EDGE, PlaneImage};
-use lf_math::{CubeCoord, Face, GeometryError, Ray, cube_coord, cube_direction};
+use lf_math::{CubeCoord, Face, Ray, cube_coord, cube_direction};
 
 /// Samples closer to a place than this, in texels, count alike. Less picks the nearest sample and shows its noise, more blurs.
 const SHARPNESS: f32 = 0.3;
+/// A ray along which the depth relative to a plane's changes by less than this a metre is taken to be parallel to it: they would meet beyond
+/// any scene, and quotients stay finite, as shaders must have them.
+const PARALLEL: f32 = 1e-20;
 
 /// A block: its planes, each as the vector whose dot product with a place, seen from the cube, is the place's depth relative to
 /// the plane's, and the texels that show the second.
@@ -46,21 +49,17 @@ struct Spot {
 }
 
 impl SurfaceCube {
-    /// The depths must have as many texels as the picture.
-    pub(crate) fn new(cube: &PackedCube) -> Result<Self, GeometryError> {
+    /// A cube that has as many texels of depth as of its picture.
+    pub(crate) fn new(cube: &PackedCube) -> Self {
         let (size, depths) = (cube.size(), cube.inverse_depths());
-        if depths[0].width() != size {
-            let have = [depths[0].width(), depths[0].height()];
-            return Err(GeometryError::Size { what: "face of inverse depths", have, want: [size; 2] });
-        }
         let colors = cube.radiance().iter().flat_map(|face| face.as_chunks().0);
-        Ok(Self {
+        Self {
             position: cube.position(),
             size,
             across: size.div_ceil(BLOCK_EDGE as u32),
             blocks: Face::ALL.into_iter().zip(depths).flat_map(|(face, image)| blocks(face, image)).collect(),
             colors: colors.copied().collect(),
-        })
+        }
     }
 
     pub(crate) fn position(&self) -> Vec3 {
@@ -115,10 +114,15 @@ impl SurfaceCube {
         self.around(at).map(|texel| self.plane(face, texel).dot(away)).into_iter().fold(0.0, f32::max)
     }
 
-    /// How far along a ray it meets the plane that the cube sees in the direction of a place. Anything, also no number, if it never does.
+    /// How far along a ray it meets the plane that the cube sees in the direction of a place; infinitely far behind its start if it never
+    /// does.
     pub(crate) fn meets(&self, ray: &Ray, place: Vec3) -> f32 {
         let plane = self.nearest_plane(place - self.position).unwrap_or(Vec3::ZERO);
-        (1.0 - plane.dot(ray.origin - self.position)) / plane.dot(ray.direction)
+        let along = plane.dot(ray.direction);
+        if along.abs() < PARALLEL {
+            return f32::NEG_INFINITY;
+        }
+        (1.0 - plane.dot(ray.origin - self.position)) / along
     }
 
     /// Adds the four texels around a place, each by its distance from it on the surface it shows (Shepard 1968, exponent 4): what lies on

@@ -1,9 +1,9 @@
 //! All methods in a room with a ball, whose every ray has a closed form.
 
 use glam::{DVec3, Vec2, Vec3};
-use lf_compress::PackedCube;
 use lf_compress::bc1::Quality;
-use lf_ibr::{BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, SphereCube};
+use lf_compress::{DepthGuide, GuidedCubes, PackedCube};
+use lf_ibr::{BoxCube, CubeField, DistanceField, Environment, GuidedField, ProbeField, SphereCube, guide_ends};
 use lf_math::{
     Cell, CubeCoord, CubeMap, DistanceCube, Face, Image, LightFieldGeometry, PlanePlacement, Ray, Search, SlabTexels,
     cube_direction,
@@ -52,7 +52,7 @@ fn guided(size: u32) -> GuidedField {
     let ends = [[0.0; 3], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     let packed =
         |end: [f32; 3]| PackedCube::encode(&cube(0.45 * Vec3::from(end), size), Quality::Standard).expect("small");
-    GuidedField::new(&ends.map(packed), guide()).expect("five")
+    GuidedField::new(&GuidedCubes::new(ends.map(packed).to_vec(), guide()).expect("five"))
 }
 
 fn guide() -> DepthGuide {
@@ -156,7 +156,7 @@ fn brackets_hold_the_ends() {
     assert_eq!(guide.bytes(), 6 * 36 * 576 * 2);
     let held = |ray: Ray| {
         let ray = Ray { direction: ray.direction.normalize(), ..ray };
-        let [near, far] = guide.ends(&ray).expect("walls all around");
+        let [near, far] = guide_ends(&guide, &ray).expect("walls all around");
         (0.94 * near..=1.06 * far).contains(&(end(&ray).0 as f32))
     };
     let (count, missed) = (rays().count(), rays().filter(|ray| !held(*ray)).count());
@@ -166,11 +166,14 @@ fn brackets_hold_the_ends() {
 #[test]
 fn cubes_must_be_there() {
     assert!(ProbeField::new(vec![], 8, 8).is_err());
-    assert!(GuidedField::new(&[], guide()).is_err());
-    // Depths coarser than the picture.
+    assert!(GuidedCubes::new(vec![], guide()).is_err());
+    // Depths coarser than the picture, and cubes of two sizes.
     let (fine, coarse) = (cube(Vec3::ZERO, 16), cube(Vec3::ZERO, 8));
     let uneven =
         DistanceCube::new(Vec3::ZERO, fine.radiance().clone(), coarse.inverse_depths().clone()).expect("a cube");
-    let uneven = PackedCube::encode(&uneven, Quality::Standard).expect("small");
-    assert!(GuidedField::new(&[uneven], guide()).is_err());
+    let [fine, coarse, uneven] =
+        [fine, coarse, uneven].map(|cube| PackedCube::encode(&cube, Quality::Standard).expect("small"));
+    assert!(GuidedCubes::new(vec![uneven], guide()).is_err());
+    assert!(GuidedCubes::new(vec![fine.clone(), coarse], guide()).is_err());
+    assert_eq!(GuidedCubes::new(vec![fine.clone()], guide()).expect("one").bytes(), fine.bytes() + guide().bytes());
 }

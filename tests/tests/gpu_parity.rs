@@ -3,11 +3,19 @@
 use glam::Vec3;
 use half::f16;
 use lf_compress::bc1::Quality;
-use lf_compress::{PackedCube, PackedLightField};
-use lf_gpu::{CubePicture, DeviceOptions, Gpu, MirrorMesh, Proxy, ReflectionPass, SlabTexture, Storage, Target};
-use lf_ibr::{BoxCube, CubeField, DistanceField, Environment, GBuffer, SlabField, SphereCube, Texel, reflect_frame};
-use lf_math::{Coverage, DistanceCube, Image, Pinhole, Search, Slab, SlabTexels, TriangleMesh, linear_from_srgb};
-use lf_scene::{capture_cube, capture_distance_cube, museum, reflectors};
+use lf_compress::{DepthGuide, GuidedCubes, PackedCube, PackedLightField};
+use lf_gpu::{
+    CubePicture, DeviceOptions, Gpu, GpuError, MirrorMesh, Proxy, ReflectionPass, SlabTexture, Storage, Target,
+};
+use lf_ibr::{
+    BoxCube, CubeField, DistanceField, Environment, GBuffer, GuidedField, ProbeField, SlabField, SphereCube, Texel,
+    reflect_frame,
+};
+use lf_math::{
+    Coverage, DistanceCube, Image, LightFieldGeometry, Pinhole, PlanePlacement, Search, Slab, SlabTexels, TriangleMesh,
+    linear_from_srgb,
+};
+use lf_scene::{capture_cube, capture_distance_cube, capture_inverse_depths, focus, museum, reflectors};
 use lf_tests::{capture, gpu, museum, packed};
 
 const SIZE: u32 = 512;
@@ -17,10 +25,11 @@ fn cameras() -> Vec<Pinhole> {
     eyes.map(|eye| Pinhole::look_at(eye, Vec3::ZERO, 0.7, SIZE, SIZE).expect("a camera")).to_vec()
 }
 
-fn mirrors() -> [(&'static str, TriangleMesh); 2] {
+/// Mirrors, and how far 99.9 % of their pixels may be apart: on the teapot's creases neighbouring rays part, by rounding of its normals.
+fn mirrors() -> [(&'static str, TriangleMesh, u8); 2] {
     [
-        ("sphere", reflectors::sphere(5).fitted(Vec3::ZERO, 0.45).expect("fits")),
-        ("teapot", reflectors::teapot(10).fitted(Vec3::ZERO, 0.48).expect("fits")),
+        ("sphere", reflectors::sphere(5).fitted(Vec3::ZERO, 0.45).expect("fits"), 4),
+        ("teapot", reflectors::teapot(10).fitted(Vec3::ZERO, 0.48).expect("fits"), 10),
     ]
 }
 
@@ -32,29 +41,32 @@ struct Agreement {
     covered: f64,
     /// Pixels that only one picture covers.
     outline: usize,
-    /// Largest difference of a channel where both cover.
+    /// Largest difference of a channel where both cover, and that which one pixel in a thousand of those exceeds.
     worst: u8,
+    high: u8,
 }
 
 fn agreement(a: &Image<[u8; 4]>, b: &Image<[u8; 4]>) -> Agreement {
-    let (mut apart, mut covered, mut outline, mut worst) = (0usize, 0usize, 0, 0);
+    let (mut apart, mut covered, mut outline, mut inside) = (0usize, 0usize, 0, vec![0]);
     for (a, b) in a.texels().iter().zip(b.texels()).filter(|(a, b)| a[3] != 0 || b[3] != 0) {
         let difference = (0..4).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0);
         covered += 1;
         apart += usize::from(difference > 2);
         if a[3] == b[3] {
-            worst = worst.max(difference);
+            inside.push(difference);
         } else {
             outline += 1;
         }
     }
     let share = |of: usize| 1.0 - apart as f64 / of as f64;
-    Agreement { all: share(a.texels().len()), covered: share(covered), outline, worst }
+    inside.sort_unstable();
+    let (worst, high) = (inside[inside.len() - 1], inside[(inside.len() - 1) * 999 / 1000]);
+    Agreement { all: share(a.texels().len()), covered: share(covered), outline, worst, high }
 }
 
 /// `covered` is the least share of the mirror's own pixels that have to agree; of all pixels 99.9 % have to.
 fn compare(gpu: &Gpu, what: &str, pass: &ReflectionPass, twin: &impl Environment, covered: f64) {
-    for (name, mesh) in mirrors() {
+    for (name, mesh, apart) in mirrors() {
         let device_mesh = MirrorMesh::new(gpu, &mesh).expect("uploads");
         let target = Target::new(gpu, SIZE, SIZE).expect("a target");
         for (eye, camera) in cameras().iter().enumerate() {
@@ -63,13 +75,14 @@ fn compare(gpu: &Gpu, what: &str, pass: &ReflectionPass, twin: &impl Environment
             let expected = reflect_frame(&GBuffer::rasterize(&mesh, camera), twin);
             let found = agreement(&drawn, &expected);
             println!(
-                "{what}, {name}, eye {eye}: within 2/255 {:.4} % of all pixels, {:.4} % of the mirror's; worst {}, {} on the outline",
+                "{what}, {name}, eye {eye}: within 2/255 {:.4} % of all pixels, {:.4} % of the mirror's; 99.9 % within {}, worst {}, {} on the outline",
                 100.0 * found.all,
                 100.0 * found.covered,
+                found.high,
                 found.worst,
                 found.outline
             );
-            assert!(found.all >= 0.999, "{what}, {name}, eye {eye}");
+            assert!(found.all >= 0.999 && found.high <= apart, "{what}, {name}, eye {eye}");
             // What is left lies on creases, where neighbouring rays part, and on the outline.
             assert!(found.covered >= covered && found.outline <= 40, "{what}, {name}, eye {eye}");
         }
@@ -218,5 +231,71 @@ fn packed_cubes_that_cannot_stay_blocks_are_decoded() {
         let search = Search::FixedPoint(4);
         let pass = ReflectionPass::packed_distance_cube(&gpu, &packed, search).expect("a pass");
         compare(&gpu, "distance cube, odd sizes", &pass, &DistanceField::new(cube, search), 0.99);
+    }
+}
+
+/// Cubes at the corners of a smaller cell, encoded.
+fn packed_cubes(places: &[[f32; 3]], size: u32) -> Vec<PackedCube> {
+    let cube = |place: &[f32; 3]| {
+        let at = 0.8 * Vec3::from(*place) * museum::cell().half_extent();
+        let cube = capture_distance_cube(&museum(), &museum::cell(), at, [size; 2], 1).expect("a cube");
+        PackedCube::encode(&cube, Quality::Standard).expect("encodes")
+    };
+    places.iter().map(cube).collect()
+}
+
+/// A device that samples BC1 and whole blocks, and one that does not and faces that are no whole blocks of either kind.
+fn devices_and_sizes() -> [(Gpu, u32); 2] {
+    let plain = Gpu::with_options(&DeviceOptions { blocks: false, ..DeviceOptions::default() }).expect("a device");
+    [(gpu(), 128), (plain, 90)]
+}
+
+/// What a pass takes beside pictures and depths: positions, scales and uniforms.
+const TABLES: u64 = 1000;
+
+/// What is apart is where a step of the search or the choice of the cube goes one way here and the other there, by rounding: at edges of things, and
+/// on the teapot's creases.
+#[test]
+fn probes_agree_within_two_steps_on_999_of_1000_pixels() {
+    let corners: Vec<_> = (0..8).map(|i| [1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 })).collect();
+    for (gpu, size) in devices_and_sizes() {
+        let packed = packed_cubes(&corners, size);
+        let cubes = packed.iter().map(|cube| cube.decode().expect("decodes")).collect();
+        let pass = ReflectionPass::probes(&gpu, &packed, 48, 6).expect("a pass");
+        let twin = ProbeField::new(cubes, 48, 6).expect("eight");
+        compare(&gpu, &format!("8 distance cubes of {size}²"), &pass, &twin, 0.997);
+        if CubePicture::from(&packed[0]).stays_blocks(&gpu) {
+            let blocks: usize = packed.iter().map(PackedCube::bytes).sum();
+            assert!((blocks as u64..blocks as u64 + TABLES).contains(&pass.bytes()), "{}", pass.bytes());
+        }
+    }
+}
+
+/// As with probes; where the search ends elsewhere, so do the votes of all cubes.
+#[test]
+fn guided_cubes_agree_within_two_steps_on_999_of_1000_pixels() {
+    let tracer = museum();
+    let geometry = LightFieldGeometry::around(museum::cell(), PlanePlacement::CellCenter, 5, 24).expect("slabs");
+    let geometry = focus(&tracer, &geometry).expect("focal planes");
+    let depths = capture_inverse_depths(&tracer, &geometry).expect("depths");
+    let guide = DepthGuide::new(geometry, &depths).expect("whole slabs");
+    let places = [[0.0; 3], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    for (gpu, size) in devices_and_sizes() {
+        let data = GuidedCubes::new(packed_cubes(&places, size), guide.clone()).expect("five");
+        let pass = ReflectionPass::guided(&gpu, &data).expect("a pass");
+        compare(&gpu, &format!("guided cubes of {size}²"), &pass, &GuidedField::new(&data), 0.996);
+        if CubePicture::from(&data.cubes()[0]).stays_blocks(&gpu) {
+            let stored = data.bytes() as u64;
+            assert!((stored..stored + TABLES).contains(&pass.bytes()), "{} {stored}", pass.bytes());
+        }
+    }
+}
+
+#[test]
+fn probes_must_be_there_and_of_one_size() {
+    let gpu = gpu();
+    let [small, large] = [8, 16].map(|size| packed_cubes(&[[0.0; 3]], size).remove(0));
+    for cubes in [&[][..], &[small, large]] {
+        assert!(matches!(ReflectionPass::probes(&gpu, cubes, 8, 8), Err(GpuError::Geometry(_))));
     }
 }

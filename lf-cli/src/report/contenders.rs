@@ -9,12 +9,11 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use glam::Vec3;
 use lf_compress::bc1::Quality;
-use lf_compress::{PackedCube, PackedLightField};
+use lf_compress::{DepthGuide, GuidedCubes, PackedCube, PackedLightField};
 use lf_format::TexelEncoding;
 use lf_gpu::{CubePicture, Gpu, Proxy, ReflectionPass, SlabTexture, Storage};
 use lf_ibr::{
-    BlockField, BoxCube, CubeField, DepthGuide, DistanceField, Environment, GuidedField, ProbeField, SlabField,
-    SphereCube,
+    BlockField, BoxCube, CubeField, DistanceField, Environment, GuidedField, ProbeField, SlabField, SphereCube,
 };
 use lf_math::{Coverage, DistanceCube, LightFieldGeometry, PlanePlacement, Search, Slab};
 use lf_scene::{capture_distance_cube, capture_inverse_depths, focus};
@@ -28,6 +27,8 @@ use crate::sources::Source;
 /// Steps of the searches in distance cubes. In the museum more of the fixed point gain a few hundredths of a decibel.
 const FIXED_POINT: (Search, &str) = (Search::FixedPoint(4), "fixed point, 4 steps");
 const STEPS: (Search, &str) = (Search::March { steps: 64, halvings: 6 }, "64 steps, 6 halvings");
+/// Halvings of the step in which a ray through eight cubes ends.
+const PROBE_HALVINGS: u32 = 6;
 /// Eight probes stand at the corners of a cube this large, of the cell's size.
 const PROBES_AT: f32 = 0.7;
 /// One of the guided cubes stands in the middle, four at corners of a cube this large.
@@ -85,8 +86,8 @@ pub(crate) fn contenders(
     for method in methods {
         match method {
             Method::Cube(spec) => one_cube(source, spec, budget, gpu, &mut within)?,
-            Method::Probes(spec) => probes(source, spec, budget, &mut within)?,
-            Method::Guided(spec) => guided(source, spec, budget, &mut within)?,
+            Method::Probes(spec) => probes(source, spec, budget, gpu, &mut within)?,
+            Method::Guided(spec) => guided(source, spec, budget, gpu, &mut within)?,
             Method::Slabs(spec) => {
                 for case in spec.cases() {
                     slabs(source, &case, budget, gpu, &mut within)?;
@@ -145,93 +146,103 @@ fn cube_of(source: &Source, edge: u32, answers: &[Answer], gpu: Option<&Gpu>, ea
     }
     let Some(gpu) = gpu else { return Ok(()) };
     let map = CubePicture::from(&packed);
-    let (map_bytes, depth_bytes) = (map.bytes(gpu), (packed.bytes() - picture) as u64);
-    let size = format!("{edge}², {}", if map.stays_blocks(gpu) { "BC1" } else { "RGBA8" });
+    let size = format!("{edge}², {}", texels_on(gpu, &packed));
     let proxy = |proxy| ReflectionPass::proxy(gpu, map, Vec3::ZERO, proxy);
     for answer in answers {
         let searched = |(search, steps): (Search, &str)| {
             let pass = ReflectionPass::packed_distance_cube(gpu, &packed, search);
-            ("distance cube", format!("{size}, depth blocks; {steps}"), map_bytes + depth_bytes, pass)
+            ("distance cube", format!("{size}, depth blocks; {steps}"), pass)
         };
-        let (name, parameters, bytes, pass) = match answer {
-            Answer::Direction => {
-                (lf_report::BASELINE_METHOD, size.clone(), map_bytes, ReflectionPass::environment(gpu, map))
-            }
-            Answer::Sphere => {
-                ("sphere-projected map", size.clone(), map_bytes, proxy(Proxy::Sphere(cube.median_distance())))
-            }
-            Answer::Box => ("box-projected map", size.clone(), map_bytes, proxy(Proxy::Box(cube.median_box()))),
+        let (name, parameters, pass) = match answer {
+            Answer::Direction => (lf_report::BASELINE_METHOD, size.clone(), ReflectionPass::environment(gpu, map)),
+            Answer::Sphere => ("sphere-projected map", size.clone(), proxy(Proxy::Sphere(cube.median_distance()))),
+            Answer::Box => ("box-projected map", size.clone(), proxy(Proxy::Box(cube.median_box()))),
             Answer::FixedPoint => searched(FIXED_POINT),
             Answer::Steps => searched(STEPS),
         };
-        let drawn = Drawn::OnGpu(gpu, &pass?);
+        let pass = pass?;
+        let (bytes, drawn) = (pass.bytes(), Drawn::OnGpu(gpu, &pass));
         each(&Contender { name, parameters, bytes, on_disk: None, preparation_s, rays, drawn })?;
     }
     Ok(())
 }
 
-/// Eight distance cubes, as many texels as fit.
-fn probes(source: &Source, spec: &ProbesSpec, budget: &Budget<'_>, each: &mut Each<'_>) -> Result<()> {
-    budget
-        .fitting(&spec.megabytes)
-        .into_iter()
-        .try_for_each(|megabytes| probes_of(source, megabytes, &spec.steps, each))
+/// How a device holds the colours of a cube.
+fn texels_on(gpu: &Gpu, cube: &PackedCube) -> &'static str {
+    if CubePicture::from(cube).stays_blocks(gpu) { "BC1" } else { "RGBA8" }
 }
 
-fn probes_of(source: &Source, megabytes: f64, steps: &[u32], each: &mut Each<'_>) -> Result<()> {
+/// Eight distance cubes, as many texels as fit.
+fn probes(
+    source: &Source,
+    spec: &ProbesSpec,
+    budget: &Budget<'_>,
+    gpu: Option<&Gpu>,
+    each: &mut Each<'_>,
+) -> Result<()> {
+    let mut of = |megabytes| probes_of(source, megabytes, &spec.steps, gpu, each);
+    budget.fitting(&spec.megabytes).into_iter().try_for_each(&mut of)
+}
+
+fn probes_of(source: &Source, megabytes: f64, steps: &[u32], gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
     let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0;
     let places = (0..8).map(|i| PROBES_AT * corner(i) * source.cell.half_extent());
     // From this many bytes on one ray a texel is traced, not four: that would take minutes.
     let grid = if megabytes > 20.0 { 1 } else { 2 };
     let set = CubeSet::capture(source, &places.collect::<Vec<_>>(), megabytes * 1e6, grid)?;
     let cubes = set.decode()?;
+    let mut hand = |texels, steps, bytes, drawn: Drawn<'_>| {
+        let (size, grid) = (set.size, set.rays);
+        let parameters =
+            format!("{size}², {texels}, depth blocks; {steps} steps, {PROBE_HALVINGS} halvings; rays a texel: {grid}");
+        let (name, preparation_s, rays) = ("8 distance cubes", set.preparation_s, set.traced());
+        each(&Contender { name, parameters, bytes, on_disk: None, preparation_s, rays, drawn })
+    };
     for &steps in steps {
-        let field = ProbeField::new(cubes.clone(), steps, 6)?;
-        each(&Contender {
-            name: "8 distance cubes",
-            parameters: format!(
-                "{}², BC1, depth blocks; {steps} steps, 6 halvings; rays a texel: {}",
-                set.size, set.rays
-            ),
-            bytes: set.bytes,
-            on_disk: None,
-            preparation_s: set.preparation_s,
-            rays: set.traced(),
-            drawn: Drawn::OnCpu(&field),
-        })?;
+        let field = ProbeField::new(cubes.clone(), steps, PROBE_HALVINGS)?;
+        hand("BC1", steps, set.bytes, Drawn::OnCpu(&field))?;
+        if let Some(gpu) = gpu {
+            let pass = ReflectionPass::probes(gpu, &set.cubes, steps, PROBE_HALVINGS)?;
+            hand(texels_on(gpu, &set.cubes[0]), steps, pass.bytes(), Drawn::OnGpu(gpu, &pass))?;
+        }
     }
     Ok(())
 }
 
 /// Five distance cubes and a guide.
-fn guided(source: &Source, spec: &GuidedSpec, budget: &Budget<'_>, each: &mut Each<'_>) -> Result<()> {
-    budget.fitting(&spec.megabytes).into_iter().try_for_each(|megabytes| guided_of(source, megabytes, each))
+fn guided(
+    source: &Source,
+    spec: &GuidedSpec,
+    budget: &Budget<'_>,
+    gpu: Option<&Gpu>,
+    each: &mut Each<'_>,
+) -> Result<()> {
+    budget.fitting(&spec.megabytes).into_iter().try_for_each(|megabytes| guided_of(source, megabytes, gpu, each))
 }
 
-fn guided_of(source: &Source, megabytes: f64, each: &mut Each<'_>) -> Result<()> {
+fn guided_of(source: &Source, megabytes: f64, gpu: Option<&Gpu>, each: &mut Each<'_>) -> Result<()> {
     let start = Instant::now();
     let [cameras, resolution] = GUIDE;
     let geometry = LightFieldGeometry::around(source.cell, PlanePlacement::CellCenter, cameras, resolution)?;
     let geometry = focus(&source.tracer, &geometry)?;
     let guide = DepthGuide::new(geometry.clone(), &capture_inverse_depths(&source.tracer, &geometry)?)?;
     let guide_s = start.elapsed().as_secs_f64();
-    let guide_bytes = guide.bytes() as u64;
     let corners = [[0.0; 3], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     let places = corners.map(|corner| GUIDED_AT * Vec3::from(corner) * source.cell.half_extent());
+    let guide_bytes = guide.bytes() as u64;
     let set = CubeSet::capture(source, &places, megabytes * 1e6 - guide_bytes as f64, GUIDED_GRID)?;
-    let field = GuidedField::new(&set.cubes, guide)?;
-    each(&Contender {
-        name: "guided cubes (ours)",
-        parameters: format!(
-            "5 × {}², BC1, depth blocks; guide {cameras}²×{resolution}²; rays a texel: {}",
-            set.size, set.rays
-        ),
-        bytes: set.bytes + guide_bytes,
-        on_disk: None,
-        preparation_s: guide_s + set.preparation_s,
-        rays: set.traced() + guide_bytes / 2,
-        drawn: Drawn::OnCpu(&field),
-    })
+    let (size, grid, preparation_s) = (set.size, set.rays, guide_s + set.preparation_s);
+    let rays = set.traced() + guide_bytes / 2;
+    let data = GuidedCubes::new(set.cubes, guide)?;
+    let mut hand = |texels, bytes, drawn: Drawn<'_>| {
+        let parameters =
+            format!("5 × {size}², {texels}, depth blocks; guide {cameras}²×{resolution}²; rays a texel: {grid}");
+        each(&Contender { name: "guided cubes (ours)", parameters, bytes, on_disk: None, preparation_s, rays, drawn })
+    };
+    hand("BC1", data.bytes() as u64, Drawn::OnCpu(&GuidedField::new(&data)))?;
+    let Some(gpu) = gpu else { return Ok(()) };
+    let pass = ReflectionPass::guided(gpu, &data)?;
+    hand(texels_on(gpu, &data.cubes()[0]), pass.bytes(), Drawn::OnGpu(gpu, &pass))
 }
 
 /// Slabs on the CPU and in every form that the device can hold.
