@@ -1,11 +1,12 @@
 //! Reflections from light field slabs, straight from their BC1 blocks, many rays at a time.
 //!
 //! The same answers as [`SlabField`](crate::SlabField) gives from decoded texels (Figs. 6 and 8 of Yu, Yang & McMillan), but for the
-//! rounding of interpolation, from an eighth of the memory. Rays wait in bins, one for each slab, until there is one for every
-//! lane of a vector; then all lanes do the same: find their place, read the blocks around it, decode the sixteen texels they need
-//! and blend them. The blocks are read in one go before anything is decoded, so that the waits for memory overlap.
+//! rounding of interpolation, from an eighth of the memory. Rays are answered in groups of one for every lane of a vector, which all
+//! do the same: find their place, read the blocks around it, decode the sixteen texels they need and blend them. Rays whose neighbours
+//! need another slab wait in bins, one for each slab, until there are enough. The blocks are read in one go before anything is
+//! decoded, so that the waits for memory overlap.
 //!
-//! `docs/fetch.md` has what it costs. A single ray is answered as slowly as a full bin.
+//! `docs/fetch.md` has what it costs. A single ray is answered as slowly as a full group.
 
 mod axis;
 mod bins;
@@ -32,7 +33,7 @@ pub struct BlockField {
 }
 
 impl BlockField {
-    /// Copies the blocks of a packed light field, camera after camera: 8 bytes a block.
+    /// Copies the blocks of a packed light field: 8 bytes a block, and of one slab at a time twice as much until it is in place.
     ///
     /// # Errors
     /// [`PackError::Encoding`] unless all slabs are BC1, [`PackError::TooLarge`] if the blocks of a slab are 2³² or more.
@@ -157,7 +158,10 @@ mod tests {
             let ends = u32::from_le_bytes([block[0], block[1], block[2], block[3]]);
             let indices = u32::from_le_bytes([block[4], block[5], block[6], block[7]]);
             let mut field = BlockField::new(&whole_zero(&geometry)).unwrap();
-            field.slabs.iter_mut().for_each(|slab| slab.blocks.fill([ends, indices]));
+            field.slabs.iter_mut().for_each(|slab| {
+                slab.blocks.fill(storage::recode([ends, indices]));
+                slab.three = slab.blocks.iter().any(storage::has_three_colors);
+            });
             let ray = |n: u32| {
                 geometry.slabs()[0].sample_ray(glam::Vec2::ZERO, glam::Vec2::new((n % 4) as f32, (n / 4) as f32))
             };

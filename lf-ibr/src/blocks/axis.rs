@@ -5,7 +5,7 @@ use std::ops::Range;
 use fearless_simd::prelude::*;
 use lf_math::{SampledAxis, Windows};
 
-use super::lanes::{F, Lanes, M, MAX_LANES, U, lanes, real, to_lanes, transpose, whole};
+use super::lanes::{F, Lanes, M, MAX_LANES, U, lanes, real, slot, to_lanes, transpose, whole};
 
 /// Cameras, slopes and windows along an axis.
 #[derive(Debug, Clone)]
@@ -58,8 +58,8 @@ pub(super) struct Neighbour<S: Simd> {
     pub(super) blocks: U<S>,
     /// Whether the further texel is in the next block.
     pub(super) crosses: M<S>,
-    /// The texels' places in their blocks, 0 to 3.
-    pub(super) places: [U<S>; 2],
+    /// Twice the texels' places in their blocks: 0, 2, 4 or 6.
+    pub(super) bits: [U<S>; 2],
 }
 
 impl Axis {
@@ -111,7 +111,7 @@ impl Axis {
             block: (texel >> 2) - window.first_block,
             blocks: window.blocks,
             crosses: (next >> 2).simd_gt(texel >> 2),
-            places: [texel & 3, next & 3],
+            bits: [(texel & 3) << 1, (next & 3) << 1],
         }
     }
 
@@ -128,9 +128,9 @@ impl Axis {
         }
         let camera = to_lanes::<S>(camera);
         let mut windows: Lanes<[[u32; 2]; 2]> = [[[0; 2]; 2]; MAX_LANES];
-        for (window, camera) in windows.iter_mut().zip(camera).take(lanes::<S>()) {
+        for (lane, camera) in camera.into_iter().enumerate().take(lanes::<S>()) {
             let Window { texels, first_block, blocks } = self.windows.get(camera as usize).copied().unwrap_or_default();
-            *window = [texels, [first_block, blocks]];
+            windows[slot::<S>(lane)] = [texels, [first_block, blocks]];
         }
         let [first, last, first_block, blocks] = transpose(simd, windows.as_flattened());
         WindowLanes { first: real::<S>(first), last: real::<S>(last), first_block, blocks }

@@ -1,51 +1,68 @@
-//! A bin of rays: places, then blocks, then colours.
+//! A group of rays for one slab: places, then blocks, then colours.
 
 use fearless_simd::prelude::*;
+use glam::Vec3;
 
 use super::axis::Neighbour;
-use super::bins::Bin;
-use super::lanes::{F, Lanes, MAX_LANES, U, lanes, load, load_u32, to_lanes, transpose};
-use super::palette::Pair;
-use super::storage::{ABSENT, Block, SlabBlocks};
+use super::bins::Rays;
+use super::lanes::{F, Lanes, MAX_LANES, U, lanes, load, load_u32, slot, to_lanes, transpose};
+use super::palette::Ends;
+use super::storage::{ABSENT, BAND, Block, SlabBlocks};
 
 /// Two blocks side by side, for each lane.
 type Row = Lanes<[Block; 2]>;
 
-/// The blocks around the rays of a bin: by camera, upper and lower.
+/// The blocks around the rays of a group: by camera, upper and lower.
 #[derive(Default)]
 pub(super) struct Fetched([[Row; 2]; 4]);
 
 /// One of the four cameras around each lane's ray.
 #[derive(Clone, Copy)]
 struct Tap<S: Simd> {
-    column: Neighbour<S>,
-    row: Neighbour<S>,
     weight: F<S>,
     /// Where the upper blocks of the neighbourhood lie, and the lower ones.
-    blocks: [U<S>; 2],
+    blocks: [Lanes<u32>; 2],
 }
 
-/// The colours of the rays in a bin, by channel and lane, 0 … 1, and which lanes have one, by bit. `fetched` is scratch.
+/// The colours of the rays in a group, by channel and lane, 0 … 1.
+pub(super) struct Colors {
+    colors: [Lanes<f32>; 3],
+    /// Which lanes have one, by bit.
+    known: u64,
+}
+
+impl Colors {
+    pub(super) const NONE: Self = Self { colors: [[0.0; MAX_LANES]; 3], known: 0 };
+
+    #[inline(always)]
+    pub(super) fn of(&self, lane: usize) -> Option<Vec3> {
+        let [red, green, blue] = &self.colors;
+        (self.known >> lane & 1 == 1).then_some(Vec3::new(red[lane], green[lane], blue[lane]))
+    }
+}
+
+/// Looks rays up in their slab. `fetched` is scratch.
 #[inline(always)]
-pub(super) fn answer<S: Simd>(simd: S, slab: &SlabBlocks, bin: &Bin, fetched: &mut Fetched) -> ([Lanes<f32>; 3], u64) {
-    let [columns, rows] = neighbours(simd, slab, bin);
+pub(super) fn answer<S: Simd>(simd: S, slab: &SlabBlocks, rays: &Rays, fetched: &mut Fetched) -> Colors {
+    let [columns, rows] = neighbours(simd, slab, rays);
     let taps = [
-        tap(simd, slab, columns[0], rows[0]),
-        tap(simd, slab, columns[1], rows[0]),
-        tap(simd, slab, columns[0], rows[1]),
-        tap(simd, slab, columns[1], rows[1]),
+        tap(simd, slab, &columns[0], &rows[0]),
+        tap(simd, slab, &columns[1], &rows[0]),
+        tap(simd, slab, &columns[0], &rows[1]),
+        tap(simd, slab, &columns[1], &rows[1]),
     ];
     for (tap, fetched) in taps.iter().zip(&mut fetched.0) {
-        fetch::<S>(slab, tap.blocks[0], &mut fetched[0]);
-        fetch::<S>(slab, tap.blocks[1], &mut fetched[1]);
+        fetch::<S>(&slab.blocks, &tap.blocks[0], &mut fetched[0]);
+        fetch::<S>(&slab.blocks, &tap.blocks[1], &mut fetched[1]);
     }
     let mut sums = [F::<S>::splat(simd, 0.0); 3];
     let mut found = F::<S>::splat(simd, 0.0);
-    for (tap, fetched) in taps.iter().zip(&fetched.0) {
+    for (i, (tap, fetched)) in taps.iter().zip(&fetched.0).enumerate() {
+        let (column, row) = (&columns[i % 2], &rows[i / 2]);
         found += tap.weight;
-        let lower = tap.weight * tap.row.fraction;
-        add(simd, tap, 0, tap.weight - lower, &fetched[0], &mut sums);
-        add(simd, tap, 1, lower, &fetched[1], &mut sums);
+        let lower = tap.weight * row.fraction;
+        add(simd, column, row.bits[0], slab.three, tap.weight - lower, &fetched[0], &mut sums);
+        add(simd, column, row.bits[1], slab.three, lower, &fetched[1], &mut sums);
     }
     let scale = if slab.starts.is_empty() { F::<S>::splat(simd, 1.0) } else { found.max(f32::MIN_POSITIVE) };
     let scale = F::<S>::splat(simd, 1.0 / 255.0) / scale;
@@ -54,35 +71,40 @@ pub(super) fn answer<S: Simd>(simd: S, slab: &SlabBlocks, bin: &Bin, fetched: &m
     for (sum, color) in sums.into_iter().zip(&mut colors) {
         (sum * scale).store_slice(&mut color[..lanes::<S>()]);
     }
-    (colors, known.to_bitmask())
+    Colors { colors, known: known.to_bitmask() }
 }
 
 /// The cameras around each ray along both axes (Eqs. 1, 3 and 4 of the paper).
 #[inline(always)]
-fn neighbours<S: Simd>(simd: S, slab: &SlabBlocks, bin: &Bin) -> [[Neighbour<S>; 2]; 2] {
+fn neighbours<S: Simd>(simd: S, slab: &SlabBlocks, rays: &Rays) -> [[Neighbour<S>; 2]; 2] {
     let (k, [s, t]) = (slab.face.axis(), slab.face.tangents());
-    let depth = load(simd, &bin.directions[k]).abs();
-    let slopes = [load(simd, &bin.directions[s]) / depth, load(simd, &bin.directions[t]) / depth];
-    let run = (F::<S>::splat(simd, slab.plane) - load(simd, &bin.origins[k])) * slab.face.sign();
-    let positions = [load(simd, &bin.origins[s]) + run * slopes[0], load(simd, &bin.origins[t]) + run * slopes[1]];
+    let depth = load(simd, &rays.directions[k]).abs();
+    let slopes = [load(simd, &rays.directions[s]) / depth, load(simd, &rays.directions[t]) / depth];
+    let run = (F::<S>::splat(simd, slab.plane) - load(simd, &rays.origins[k])) * slab.face.sign();
+    let positions = [load(simd, &rays.origins[s]) + run * slopes[0], load(simd, &rays.origins[t]) + run * slopes[1]];
     [slab.axes[0].neighbours(simd, positions[0], slopes[0]), slab.axes[1].neighbours(simd, positions[1], slopes[1])]
 }
 
 #[inline(always)]
-fn tap<S: Simd>(simd: S, slab: &SlabBlocks, column: Neighbour<S>, row: Neighbour<S>) -> Tap<S> {
+fn tap<S: Simd>(simd: S, slab: &SlabBlocks, column: &Neighbour<S>, row: &Neighbour<S>) -> Tap<S> {
     let [columns, rows] = &slab.axes;
-    let camera = row.camera * columns.cameras() + column.camera;
     let mut weight = column.share * row.share;
-    let start = if slab.starts.is_empty() {
-        camera * (columns.blocks() * rows.blocks())
+    let (start, stride) = if slab.starts.is_empty() {
+        let (across, down) = (U::<S>::splat(simd, columns.cameras()), rows.cameras());
+        let band = row.camera & !(BAND - 1);
+        let together = (U::<S>::splat(simd, down) - band).min(BAND) * columns.blocks();
+        let first = band * across * (columns.blocks() * rows.blocks()) + (row.camera - band) * columns.blocks();
+        (first + column.camera * together, together * across)
     } else {
-        let start = starts(simd, slab, camera);
+        let start = starts(simd, slab, row.camera * columns.cameras() + column.camera);
         weight = start.simd_eq(ABSENT).select(F::<S>::splat(simd, 0.0), weight);
-        start
+        (start, column.blocks)
     };
-    let upper = start + row.block * column.blocks + column.block;
-    let lower = row.crosses.select(upper + column.blocks, upper);
-    Tap { column, row, weight, blocks: [upper, lower] }
+    let upper = start + row.block * stride + column.block;
+    let lower = row.crosses.select(upper + stride, upper);
+    // An absent camera's blocks may lie anywhere. What is read for it does not count.
+    let last = slab.blocks.len() as u32 - 2;
+    Tap { weight, blocks: [to_lanes::<S>(upper.min(last)), to_lanes::<S>(lower.min(last))] }
 }
 
 /// Where the blocks of each lane's camera begin.
@@ -95,29 +117,32 @@ fn starts<S: Simd>(simd: S, slab: &SlabBlocks, camera: U<S>) -> U<S> {
     load_u32(simd, &starts)
 }
 
-/// Reads the block at each place and the one after it.
+/// Reads the block at each place and the one after it. All places exist.
 #[inline(always)]
-fn fetch<S: Simd>(slab: &SlabBlocks, places: U<S>, out: &mut Row) {
-    let places = to_lanes::<S>(places);
-    for (out, place) in out.iter_mut().zip(places).take(lanes::<S>()) {
-        // Always there; a lane without a place reads anything.
-        if let Some([left, right]) = slab.blocks.get(place as usize..).and_then(|blocks| blocks.first_chunk()) {
-            *out = [*left, *right];
-        }
+fn fetch<S: Simd>(blocks: &[Block], places: &Lanes<u32>, out: &mut Row) {
+    for (lane, &place) in places.iter().enumerate().take(lanes::<S>()) {
+        let place = place as usize;
+        out[slot::<S>(lane)].copy_from_slice(&blocks[place..place + 2]);
     }
 }
 
-/// Adds two texels side by side in one row, of a weight together.
+/// Adds two texels side by side, of a weight together, in the row whose place in the block is half of `above`.
 #[inline(always)]
-fn add<S: Simd>(simd: S, tap: &Tap<S>, row: usize, weight: F<S>, blocks: &Row, sums: &mut [F<S>; 3]) {
-    let [ends, indices, next_ends, next_indices] = transpose(simd, blocks.as_flattened());
-    let crosses = tap.column.crosses;
-    let ends = [ends, crosses.select(next_ends, ends)];
-    let places = [tap.column.places[0], tap.column.places[1]];
-    let above = tap.row.places[row] << 3;
-    let left = indices >> (above + (places[0] << 1));
-    let right = crosses.select(next_indices, indices) >> (above + (places[1] << 1));
-    let pair = Pair::new(simd, ends, [left & 3, right & 3]);
-    let far = weight * tap.column.fraction;
-    pair.accumulate([weight - far, far], sums);
+fn add<S: Simd>(
+    simd: S,
+    column: &Neighbour<S>,
+    above: U<S>,
+    three: bool,
+    weight: F<S>,
+    blocks: &Row,
+    sums: &mut [F<S>; 3],
+) {
+    let [ends, codes, next_ends, next_codes] = transpose(simd, blocks.as_flattened());
+    let (next_ends, next_codes) = (column.crosses.select(next_ends, ends), column.crosses.select(next_codes, codes));
+    // Known to be less than 32, the shifts need no check.
+    let left = codes >> (((above << 2) + column.bits[0]) & 31) & 3;
+    let right = next_codes >> (((above << 2) + column.bits[1]) & 31) & 3;
+    let far = weight * column.fraction;
+    Ends::new(ends).accumulate(simd, left, three, weight - far, sums);
+    Ends::new(next_ends).accumulate(simd, right, three, far, sums);
 }

@@ -10,6 +10,8 @@ pub(super) type I<S> = <S as Simd>::i32s;
 pub(super) type U<S> = <S as Simd>::u32s;
 /// Two 16-bit numbers per ray, the first in the low half.
 pub(super) type Pairs<S> = <S as Simd>::u16s;
+/// The same, signed.
+pub(super) type Shorts<S> = <S as Simd>::i16s;
 pub(super) type M<S> = <S as Simd>::mask32s;
 
 /// The most lanes that any machine has.
@@ -40,7 +42,12 @@ pub(super) fn to_lanes<S: Simd>(values: U<S>) -> Lanes<u32> {
     out
 }
 
-/// Four numbers of each lane, from lanes of twice two.
+/// Where the four numbers of a lane go for [`transpose`], so that none has to leave its 128 bits, which would take twice the shuffles.
+pub(super) const fn slot<S: Simd>(lane: usize) -> usize {
+    lane % 4 * (lanes::<S>() / 4) + lane / 4
+}
+
+/// Four numbers of each lane, from one [`slot`] each (Eklundh 1972: 1×1, then 2×2 numbers change places).
 #[inline(always)]
 pub(super) fn transpose<S: Simd>(simd: S, values: &[[u32; 2]]) -> [U<S>; 4] {
     let n = lanes::<S>();
@@ -49,8 +56,16 @@ pub(super) fn transpose<S: Simd>(simd: S, values: &[[u32; 2]]) -> [U<S>; 4] {
     let b = U::<S>::from_slice(simd, &values[n..2 * n]);
     let c = U::<S>::from_slice(simd, &values[2 * n..3 * n]);
     let d = U::<S>::from_slice(simd, &values[3 * n..4 * n]);
-    let (even, odd) = ([a.unzip_low(b), c.unzip_low(d)], [a.unzip_high(b), c.unzip_high(d)]);
-    [even[0].unzip_low(even[1]), odd[0].unzip_low(odd[1]), even[0].unzip_high(even[1]), odd[0].unzip_high(odd[1])]
+    let (odd, upper) = (M::<S>::from_bitmask(simd, 0xaaaa), M::<S>::from_bitmask(simd, 0xcccc));
+    let ([a, b], [c, d]) = (exchange::<S, 1, 3>(a, b, odd), exchange::<S, 1, 3>(c, d, odd));
+    let ([a, c], [b, d]) = (exchange::<S, 2, 2>(a, c, upper), exchange::<S, 2, 2>(b, d, upper));
+    [a, b, c, d]
+}
+
+/// Exchanges the masked numbers of `a` with those of `b` that are `NEAR` places before, within 128 bits. `BACK` is 4 − `NEAR`.
+#[inline(always)]
+fn exchange<S: Simd, const NEAR: usize, const BACK: usize>(a: U<S>, b: U<S>, mask: M<S>) -> [U<S>; 2] {
+    [mask.select(b.slide_within_blocks::<BACK>(b), a), mask.select(b, a.slide_within_blocks::<NEAR>(a))]
 }
 
 /// Non-negative integers below 2²⁴ as such.

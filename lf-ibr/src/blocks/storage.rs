@@ -1,5 +1,7 @@
 //! A slab's blocks in memory.
 
+use std::cmp::Ordering;
+
 use lf_compress::format::{CameraPlace, SlabTiling, TexelEncoding};
 use lf_compress::{PackError, PackedLightField};
 use lf_math::{Face, Slab};
@@ -9,10 +11,15 @@ use super::axis::Axis;
 /// In place of where a camera's blocks begin: there are none.
 pub(super) const ABSENT: u32 = u32::MAX;
 
-/// A BC1 block: its two endpoints, the first in the low half, and its indices.
+/// Rows of cameras in a band. What a ray needs of its four images is so mostly in one page of memory: in 4 KiB there is a row of blocks of
+/// 4×4 images that are 32 blocks wide. More rows would have fewer columns in a page.
+pub(super) const BAND: u32 = 4;
+
+/// A block: its two endpoints, the first in the low half, and an index or code for each texel, texel 0 lowest.
 pub(super) type Block = [u32; 2];
 
-/// One slab: camera after camera (s fastest), of each image the window that is there, row of blocks after row.
+/// One slab. Whole images are [`interleaved`]; of others, camera after camera (s fastest), the window that is there, row of blocks
+/// after row.
 #[derive(Debug, Clone)]
 pub(super) struct SlabBlocks {
     pub(super) face: Face,
@@ -20,8 +27,10 @@ pub(super) struct SlabBlocks {
     pub(super) axes: [Axis; 2],
     /// Where each camera's blocks begin; empty if all images are whole.
     pub(super) starts: Vec<u32>,
-    /// Endpoints and indices. One block more than there are, so that two can be read at each.
+    /// [`recode`]d blocks. Two more than there are, so that two can be read at each, and if there is none.
     pub(super) blocks: Vec<Block>,
+    /// Whether any block has three colours.
+    pub(super) three: bool,
 }
 
 impl SlabBlocks {
@@ -36,9 +45,12 @@ impl SlabBlocks {
         if bytes >= limit {
             return Err(PackError::TooLarge { bytes, limit });
         }
-        blocks.push([0; 2]);
-        let starts = if tiling.coverage().is_whole() { Vec::new() } else { starts };
-        Ok(Self { face: slab.face(), plane: slab.plane(), axes: axes(slab, tiling), starts, blocks })
+        let axes = axes(slab, tiling);
+        let whole = tiling.coverage().is_whole();
+        let (starts, mut blocks) = if whole { (Vec::new(), interleaved(&blocks, &axes)) } else { (starts, blocks) };
+        blocks.extend([[0; 2]; 2]);
+        let three = blocks.iter().any(has_three_colors);
+        Ok(Self { face: slab.face(), plane: slab.plane(), axes, starts, blocks, three })
     }
 }
 
@@ -46,6 +58,22 @@ fn axes(slab: &Slab, tiling: &SlabTiling) -> [Axis; 2] {
     let windows = [tiling.coverage().columns(), tiling.coverage().rows()];
     let disparity = slab.disparity().to_array();
     [0, 1].map(|i| Axis::new(slab.st()[i], slab.uv()[i], disparity[i], windows[i]))
+}
+
+/// Whole images in bands of [`BAND`] rows of cameras: row of blocks after row, and of each those of the band's cameras, t fastest.
+fn interleaved(blocks: &[Block], axes: &[Axis; 2]) -> Vec<Block> {
+    let [across, down] = axes.each_ref().map(|axis| axis.cameras() as usize);
+    let [width, height] = axes.each_ref().map(|axis| axis.blocks() as usize);
+    let mut out = Vec::with_capacity(blocks.len() + 1);
+    for band in (0..down).step_by(BAND as usize) {
+        let rows = band..(band + BAND as usize).min(down);
+        for (y, s) in (0..height).flat_map(|y| (0..across).map(move |s| (y, s))) {
+            for camera in rows.clone().map(|t| t * across + s) {
+                out.extend_from_slice(&blocks[(camera * height + y) * width..][..width]);
+            }
+        }
+    }
+    out
 }
 
 /// Appends the blocks of all cameras, and returns where those of each begin. Past 2³² the numbers are wrong.
@@ -73,5 +101,30 @@ fn append_window(blocks: &mut Vec<Block>, place: &CameraPlace, tile: &[u8], widt
 }
 
 fn words(&[a, b, c, d, e, f, g, h]: &[u8; 8]) -> Block {
-    [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])]
+    recode([u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])])
+}
+
+/// A BC1 block's texels, with codes for indices that are the share of the second endpoint: in thirds, or, if the block
+/// [`has_three_colors`], in halves, where 3 is black.
+///
+/// Few blocks need three colours: those of one colour and those of endpoints alone do not.
+pub(super) fn recode([ends, indices]: Block) -> Block {
+    const LOW: u32 = 0x5555_5555;
+    let (low, high) = (indices & LOW, indices >> 1 & LOW);
+    let (first, second) = (ends & 0xffff, ends >> 16);
+    let black = low & high;
+    match first.cmp(&second) {
+        Ordering::Greater => [ends, low << 1 | (low ^ high)],
+        // Of one colour.
+        Ordering::Equal if black == 0 => [ends, 0],
+        Ordering::Equal => [second << 16, (LOW ^ black) << 1],
+        // Of endpoints only.
+        Ordering::Less if high == 0 => [ends.rotate_left(16), (low ^ LOW) * 3],
+        Ordering::Less => [ends, low << 1 | high],
+    }
+}
+
+/// Whether a recoded block has two endpoints, what is half way between them, and black.
+pub(super) fn has_three_colors(&[ends, _]: &Block) -> bool {
+    ends & 0xffff < ends >> 16
 }
