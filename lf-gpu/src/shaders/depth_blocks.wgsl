@@ -2,5 +2,5 @@
 
 fn stored_inverse(away: vec3f) -> f32 {
     let spot = spot_of(away);
-    return inverse_at(0u, spot.face, nearest_texel(spot, place.depth_size));
+    return inverse_at(face_blocks(0u, spot.face), nearest_texel(spot, place.depth_size));
 }

@@ -13,14 +13,12 @@ struct DistanceCube {
     padding: u32,
 }
 
-// Six half floats, three for each plane (its value in the middle, what it grows by along x and along y), and a bit for each texel that says
-// which plane it is on.
+// A block: three half floats for each of two planes (its value in the middle, what it grows by along x and along y), and a bit for each texel
+// that says which plane it is on.
 struct PlaneBlock {
-    first: u32,
-    both: u32,
-    second: u32,
-    upper_mask: u32,
-    lower_mask: u32,
+    // The first two of the first plane; the third, and the first of the second plane; the rest.
+    halves: array<u32, 3>,
+    masks: array<u32, 2>,
 }
 
 @group(0) @binding(4) var<storage, read> blocks: array<PlaneBlock>;
@@ -28,22 +26,34 @@ struct PlaneBlock {
 
 const BLOCK_EDGE = 8u;
 
-// The function that a texel is on: its value in the middle of the texel's block, what it grows by along x and along y.
-fn held(cube: u32, face: u32, texel: vec2u) -> vec3f {
+// The blocks of a face: the number of the first, how many lie in a row, what their values are multiplied by.
+struct FaceBlocks {
+    first: u32,
+    across: u32,
+    scale: f32,
+}
+
+fn face_blocks(cube: u32, face: u32) -> FaceBlocks {
     let across = (cubes[cube].size + BLOCK_EDGE - 1u) / BLOCK_EDGE;
+    return FaceBlocks(cubes[cube].first_block + face * across * across, across, cubes[cube].scales[face]);
+}
+
+// The function that a texel is on: its value in the middle of the texel's block, what it grows by along x and along y.
+fn held(face: FaceBlocks, texel: vec2u) -> vec3f {
     let place = texel / BLOCK_EDGE;
-    let block = blocks[cubes[cube].first_block + (face * across + place.y) * across + place.x];
+    let block = face.first + place.y * face.across + place.x;
     let inside = texel % BLOCK_EDGE;
-    let mask = select(block.upper_mask, block.lower_mask, inside.y >= BLOCK_EDGE / 2u);
-    let is_second = (mask >> (BLOCK_EDGE * (inside.y % (BLOCK_EDGE / 2u)) + inside.x) & 1u) == 1u;
-    let both = unpack2x16float(block.both);
-    let own = unpack2x16float(select(block.first, block.second, is_second));
-    return cubes[cube].scales[face] * select(vec3f(own, both.x), vec3f(both.y, own), is_second);
+    let bit = BLOCK_EDGE * inside.y + inside.x;
+    // Three words of the five are read.
+    let is_second = (blocks[block].masks[bit / 32u] >> (bit % 32u) & 1u) == 1u;
+    let both = unpack2x16float(blocks[block].halves[1]);
+    let own = unpack2x16float(blocks[block].halves[select(0u, 2u, is_second)]);
+    return face.scale * select(vec3f(own, both.x), vec3f(both.y, own), is_second);
 }
 
 // The inverse depth in the middle of a texel.
-fn inverse_at(cube: u32, face: u32, texel: vec2u) -> f32 {
-    let plane = held(cube, face, texel);
+fn inverse_at(face: FaceBlocks, texel: vec2u) -> f32 {
+    let plane = held(face, texel);
     let from_middle = vec2f(texel % BLOCK_EDGE) - 0.5 * f32(BLOCK_EDGE - 1u);
     return max(plane.x + dot(from_middle, plane.yz), 0.0);
 }

@@ -25,7 +25,8 @@ const THICKNESS = 0.03;
 
 fn relative_depth(cube: u32, away: vec3f) -> f32 {
     let spot = spot_of(away);
-    return spot.away.z * inverse_at(cube, spot.face, nearest_texel(spot, cubes[cube].size));
+    let texel = nearest_texel(spot, cubes[cube].size);
+    return spot.away.z * inverse_at(face_blocks(cube, spot.face), texel);
 }
 
 fn is_free(cube: u32, away: vec3f) -> bool {

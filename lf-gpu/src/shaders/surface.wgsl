@@ -10,15 +10,16 @@ const INFINITE = 1e30;
 
 // The plane that a texel shows, along its face's right, down and forward: its dot product with a place is the place's depth relative to
 // the plane's.
-fn plane_at(cube: u32, face: u32, texel: vec2u) -> vec3f {
-    let plane = held(cube, face, texel);
-    let half_size = 0.5 * f32(cubes[cube].size);
+fn plane_at(face: FaceBlocks, size: u32, texel: vec2u) -> vec3f {
+    let plane = held(face, texel);
+    let half_size = 0.5 * f32(size);
     let to_centre = half_size - 0.5 * f32(BLOCK_EDGE) - vec2f(texel / BLOCK_EDGE * BLOCK_EDGE);
     return vec3f(half_size * plane.yz, plane.x + dot(to_centre, plane.yz));
 }
 
 fn nearest_plane(cube: u32, spot: Spot) -> vec3f {
-    return plane_at(cube, spot.face, nearest_texel(spot, cubes[cube].size));
+    let size = cubes[cube].size;
+    return plane_at(face_blocks(cube, spot.face), size, nearest_texel(spot, size));
 }
 
 // One of the four texels around a place, its number kept within the face.
@@ -38,9 +39,10 @@ fn largest_relative_depth(cube: u32, place: vec3f) -> f32 {
     let spot = spot_of(place - cubes[cube].position);
     let size = cubes[cube].size;
     let at = index_of(spot, size);
+    let face = face_blocks(cube, spot.face);
     var largest = 0.0;
     for (var corner = 0u; corner < 4u; corner++) {
-        largest = max(largest, dot(plane_at(cube, spot.face, around(at, corner, size)), spot.away));
+        largest = max(largest, dot(plane_at(face, size, around(at, corner, size)), spot.away));
     }
     return largest;
 }
@@ -61,6 +63,7 @@ fn samples(cube: u32, place: vec3f, far: f32, unit: f32) -> vec4f {
     let spot = spot_of(place - cubes[cube].position);
     let size = cubes[cube].size;
     let at = index_of(spot, size);
+    let face = face_blocks(cube, spot.face);
     let texel_width = 2.0 / f32(size);
     let scaled = spot.away / unit;
     let blur = SHARPNESS * texel_width * scaled.z;
@@ -68,7 +71,7 @@ fn samples(cube: u32, place: vec3f, far: f32, unit: f32) -> vec4f {
     for (var corner = 0u; corner < 4u; corner++) {
         let texel = around(at, corner, size);
         let direction = vec3f(texel_width * (vec2f(texel) + 0.5) - 1.0, 1.0);
-        let depth = 1.0 / max(dot(plane_at(cube, spot.face, texel), direction), 1.0 / far);
+        let depth = 1.0 / max(dot(plane_at(face, size, texel), direction), 1.0 / far);
         let between = depth / unit * direction - scaled;
         let apart = dot(between, between) + blur * blur;
         let color = textureLoad(pictures, texel, 6u * cube + spot.face, 0).rgb;
