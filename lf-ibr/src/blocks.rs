@@ -10,8 +10,6 @@
 mod axis;
 mod bins;
 mod kernel;
-mod lanes;
-mod palette;
 mod storage;
 
 use fearless_simd::{Level, dispatch};

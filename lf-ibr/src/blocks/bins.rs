@@ -5,8 +5,8 @@ use glam::Vec3;
 use lf_math::{Face, Ray};
 
 use super::kernel::{Fetched, answer};
-use super::lanes::{Lanes, MAX_LANES, lanes};
 use super::storage::SlabBlocks;
+use crate::lanes::{Lanes, MAX_LANES, lanes};
 
 /// Rays of one slab that wait for company.
 #[derive(Clone, Copy)]

@@ -4,9 +4,9 @@ use fearless_simd::prelude::*;
 
 use super::axis::Neighbour;
 use super::bins::Bin;
-use super::lanes::{F, Lanes, MAX_LANES, U, lanes, load, load_u32, to_lanes, transpose};
-use super::palette::Pair;
 use super::storage::{ABSENT, Block, SlabBlocks};
+use crate::lanes::{F, Lanes, MAX_LANES, U, lanes, load, load_u32, to_lanes, transpose};
+use crate::palette::Pair;
 
 /// Two blocks side by side, for each lane.
 type Row = Lanes<[Block; 2]>;

@@ -5,11 +5,11 @@
 
 use fearless_simd::prelude::*;
 
-use super::lanes::{F, Pairs, U, real};
+use crate::lanes::{F, Pairs, U, real};
 
 /// The endpoints of a colour.
 #[derive(Clone, Copy)]
-pub(super) struct Pair<S: Simd> {
+pub(crate) struct Pair<S: Simd> {
     near: Pairs<S>,
     far: Pairs<S>,
     /// Whether the colour lies half way between the two, by all bits.
@@ -19,7 +19,7 @@ pub(super) struct Pair<S: Simd> {
 impl<S: Simd> Pair<S> {
     /// From the endpoints and the indices of two texels.
     #[inline(always)]
-    pub(super) fn new(simd: S, ends: [U<S>; 2], indices: [U<S>; 2]) -> Self {
+    pub(crate) fn new(simd: S, ends: [U<S>; 2], indices: [U<S>; 2]) -> Self {
         let first: Pairs<S> = ((ends[0] & 0xffff) | ends[1] << 16).bitcast();
         let second: Pairs<S> = (ends[0] >> 16 | (ends[1] & 0xffff_0000)).bitcast();
         let index: Pairs<S> = (indices[0] | indices[1] << 16).bitcast();
@@ -36,7 +36,7 @@ impl<S: Simd> Pair<S> {
 
     /// Adds the two colours, weighted, to the sums of each channel, 0 to 255.
     #[inline(always)]
-    pub(super) fn accumulate(self, weights: [F<S>; 2], sums: &mut [F<S>; 3]) {
+    pub(crate) fn accumulate(self, weights: [F<S>; 2], sums: &mut [F<S>; 3]) {
         let (near, far) = (channels::<S>(self.near), channels::<S>(self.far));
         for c in 0..3 {
             let third = third::<S>(near[c], far[c]);

@@ -5,36 +5,36 @@
 
 use fearless_simd::prelude::*;
 
-pub(super) type F<S> = <S as Simd>::f32s;
-pub(super) type I<S> = <S as Simd>::i32s;
-pub(super) type U<S> = <S as Simd>::u32s;
+pub(crate) type F<S> = <S as Simd>::f32s;
+pub(crate) type I<S> = <S as Simd>::i32s;
+pub(crate) type U<S> = <S as Simd>::u32s;
 /// Two 16-bit numbers per ray, the first in the low half.
-pub(super) type Pairs<S> = <S as Simd>::u16s;
-pub(super) type M<S> = <S as Simd>::mask32s;
+pub(crate) type Pairs<S> = <S as Simd>::u16s;
+pub(crate) type M<S> = <S as Simd>::mask32s;
 
 /// The most lanes that any machine has.
-pub(super) const MAX_LANES: usize = 16;
+pub(crate) const MAX_LANES: usize = 16;
 
 /// A number for each lane.
-pub(super) type Lanes<T> = [T; MAX_LANES];
+pub(crate) type Lanes<T> = [T; MAX_LANES];
 
 /// Rays that are answered together.
-pub(super) const fn lanes<S: Simd>() -> usize {
+pub(crate) const fn lanes<S: Simd>() -> usize {
     <F<S> as SimdBase<S>>::LEN
 }
 
 #[inline(always)]
-pub(super) fn load<S: Simd>(simd: S, values: &Lanes<f32>) -> F<S> {
+pub(crate) fn load<S: Simd>(simd: S, values: &Lanes<f32>) -> F<S> {
     F::<S>::from_slice(simd, &values[..lanes::<S>()])
 }
 
 #[inline(always)]
-pub(super) fn load_u32<S: Simd>(simd: S, values: &Lanes<u32>) -> U<S> {
+pub(crate) fn load_u32<S: Simd>(simd: S, values: &Lanes<u32>) -> U<S> {
     U::<S>::from_slice(simd, &values[..lanes::<S>()])
 }
 
 #[inline(always)]
-pub(super) fn to_lanes<S: Simd>(values: U<S>) -> Lanes<u32> {
+pub(crate) fn to_lanes<S: Simd>(values: U<S>) -> Lanes<u32> {
     let mut out = [0; MAX_LANES];
     values.store_slice(&mut out[..lanes::<S>()]);
     out
@@ -42,7 +42,7 @@ pub(super) fn to_lanes<S: Simd>(values: U<S>) -> Lanes<u32> {
 
 /// Four numbers of each lane, from lanes of twice two.
 #[inline(always)]
-pub(super) fn transpose<S: Simd>(simd: S, values: &[[u32; 2]]) -> [U<S>; 4] {
+pub(crate) fn transpose<S: Simd>(simd: S, values: &[[u32; 2]]) -> [U<S>; 4] {
     let n = lanes::<S>();
     let values = values.as_flattened();
     let a = U::<S>::from_slice(simd, &values[..n]);
@@ -55,13 +55,13 @@ pub(super) fn transpose<S: Simd>(simd: S, values: &[[u32; 2]]) -> [U<S>; 4] {
 
 /// Non-negative integers below 2²⁴ as such.
 #[inline(always)]
-pub(super) fn whole<S: Simd>(values: F<S>) -> U<S> {
+pub(crate) fn whole<S: Simd>(values: F<S>) -> U<S> {
     values.to_int::<I<S>>().bitcast()
 }
 
 /// The other way.
 #[inline(always)]
-pub(super) fn real<S: Simd>(values: U<S>) -> F<S> {
+pub(crate) fn real<S: Simd>(values: U<S>) -> F<S> {
     let values: I<S> = values.bitcast();
     values.to_float()
 }
