@@ -30,7 +30,7 @@ impl DepthGuide {
     /// A guide with the inverse depths of each slab.
     ///
     /// # Errors
-    /// There must be whole images for every slab, with its numbers of cameras and texels. They are rounded to half floats.
+    /// There must be whole images for every slab, with its numbers of cameras and texels, and all numbers. They are rounded to half floats.
     pub fn new(geometry: LightFieldGeometry, texels: &[SlabTexels<f32>]) -> Result<Self, GeometryError> {
         let expected = geometry.slabs().len();
         if texels.len() != expected {
@@ -38,6 +38,9 @@ impl DepthGuide {
         }
         for (slab, texels) in geometry.slabs().iter().zip(texels) {
             texels.check(slab)?;
+            if let Some(&value) = texels.texels().iter().find(|inverse| inverse.is_nan()) {
+                return Err(GeometryError::NotFinite { what: "inverse depth", value });
+            }
             let whole = slab.cameras().iter().chain(&slab.resolution()).map(|&n| n as usize).product();
             if texels.texels().len() != whole {
                 return Err(GeometryError::Length {

@@ -11,8 +11,6 @@
 mod axis;
 mod bins;
 mod kernel;
-mod lanes;
-mod palette;
 mod storage;
 
 use fearless_simd::{Level, dispatch};
@@ -159,8 +157,8 @@ mod tests {
             let indices = u32::from_le_bytes([block[4], block[5], block[6], block[7]]);
             let mut field = BlockField::new(&whole_zero(&geometry)).unwrap();
             field.slabs.iter_mut().for_each(|slab| {
-                slab.blocks.fill(storage::recode([ends, indices]));
-                slab.three = slab.blocks.iter().any(storage::has_three_colors);
+                slab.blocks.fill(crate::palette::recode([ends, indices]));
+                slab.three = slab.blocks.iter().any(crate::palette::has_three_colors);
             });
             let ray = |n: u32| {
                 geometry.slabs()[0].sample_ray(glam::Vec2::ZERO, glam::Vec2::new((n % 4) as f32, (n / 4) as f32))

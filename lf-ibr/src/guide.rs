@@ -1,6 +1,7 @@
 //! Slabs of inverse depth that tell a ray roughly where it ends.
 
 use glam::Vec2;
+use half::f16;
 use lf_compress::DepthGuide;
 use lf_math::{Ray, Slab};
 
@@ -14,35 +15,48 @@ pub fn guide_ends(guide: &DepthGuide, ray: &Ray) -> Option<[f32; 2]> {
     let indexed = guide.geometry().index_ray(ray)?;
     let (slab, texels) = (&guide.geometry().slabs()[indexed.slab], guide.inverse_depths(indexed.slab));
     let disparity = slab.disparity_at(1.0);
-    let last = slab.resolution().map(|n| n - 1);
-    let mut ends = [f32::INFINITY, f32::NEG_INFINITY];
-    for tap in slab.taps(&indexed.coord) {
+    let [width, height] = slab.resolution().map(|n| n as usize);
+    let last = Vec2::new(width as f32 - 1.0, height as f32 - 1.0);
+    let mut around = [0.0; 16];
+    for (tap, around) in slab.taps(&indexed.coord).into_iter().zip(around.as_chunks_mut::<4>().0) {
         let camera = Vec2::new(tap.camera[0] as f32, tap.camera[1] as f32);
         let number = (tap.camera[1] * slab.cameras()[0] + tap.camera[0]) as usize;
-        let size = slab.resolution().map(|n| n as usize);
-        let image = &texels[number * size[0] * size[1]..];
-        let texel = |u: u32, v: u32| image[v.min(last[1]) as usize * size[0] + u.min(last[0]) as usize].to_f32();
-        let first = texel((tap.uv.x + 0.5) as u32, (tap.uv.y + 0.5) as u32);
-        // Casts of what is out of range, or not a number, saturate.
-        let place = indexed.coord.uv + disparity * first * (indexed.coord.st - camera);
-        let [u, v] = [place.x.max(0.0) as u32, place.y.max(0.0) as u32];
-        let around =
-            [(u, v), (u.saturating_add(1), v), (u, v.saturating_add(1)), (u.saturating_add(1), v.saturating_add(1))];
-        for inverse in around.map(|(u, v)| texel(u, v)) {
-            let end = end(slab, ray, inverse);
-            if end > 0.0 {
-                ends = [ends[0].min(end), ends[1].max(end)];
-            }
-        }
+        let image = &texels[number * width * height..][..width * height];
+        let texel = |u: u32, v: u32| value(image[v as usize * width + u as usize]);
+        let [u, v] = (tap.uv + 0.5).min(last).to_array().map(|at| at as u32);
+        // What is not a number is cast to 0.
+        let place = indexed.coord.uv + disparity * texel(u, v) * (indexed.coord.st - camera);
+        let [u, v] = place.max(Vec2::ZERO).min(last).to_array().map(|at| at as u32);
+        let [right, down] = [(u + 1).min(width as u32 - 1), (v + 1).min(height as u32 - 1)];
+        *around = [texel(u, v), texel(right, v), texel(u, down), texel(right, down)];
     }
+    let ends = ends(slab, ray, &around);
     (ends[0] <= ends[1]).then_some(ends)
 }
 
-/// How far along a ray it reaches an inverse depth: infinite for 0.
-fn end(slab: &Slab, ray: &Ray, inverse: f32) -> f32 {
+/// A half float that is finite, in three operations: its bits as those of a float are too small by a power of two.
+fn value(half: f16) -> f32 {
+    let bits = u32::from(half.to_bits());
+    let too_small = f32::from_bits((bits & 0x8000) << 16 | (bits & 0x7fff) << 13);
+    too_small * 2f32.powi(127 - 15)
+}
+
+/// How far along a ray it reaches the nearest and the farthest of inverse depths, of those in front of it: infinite for 0.
+fn ends(slab: &Slab, ray: &Ray, inverses: &[f32; 16]) -> [f32; 2] {
     let (axis, sign) = (slab.face().axis(), slab.face().sign());
-    if inverse == 0.0 {
-        return f32::INFINITY;
+    let (start, step) = ((slab.plane() - ray.origin[axis]) / ray.direction[axis], sign / ray.direction[axis]);
+    let ends = inverses.map(|inverse| if inverse == 0.0 { f32::INFINITY } else { start + step / inverse });
+    let near = ends.map(|end| if end > 0.0 { end } else { f32::INFINITY });
+    let far = ends.map(|end| if end > 0.0 { end } else { f32::NEG_INFINITY });
+    [fold(near, |a, b| if b < a { b } else { a }), fold(far, |a, b| if b > a { b } else { a })]
+}
+
+/// Sixteen numbers made one, by halves: in vectors.
+fn fold(mut values: [f32; 16], of_two: impl Fn(f32, f32) -> f32) -> f32 {
+    for half in [8, 4, 2, 1] {
+        for i in 0..half {
+            values[i] = of_two(values[i], values[i + half]);
+        }
     }
-    (slab.plane() + sign / inverse - ray.origin[axis]) / ray.direction[axis]
+    values[0]
 }

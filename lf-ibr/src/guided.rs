@@ -4,15 +4,18 @@
 //! A few cubes store it sharply, but do not know which of their texels a ray asks for. Here slabs that hold nothing but
 //! inverse depth, and little of that, say where the ray ends to within a bracket ([`guide_ends`]). Within it the ray meets planes that
 //! the cubes show, in closed form; the cubes vote on where it ends; and the texels around that place, of all cubes, are blended
-//! by how near to it on the surface they lie.
+//! by how near to it on the surface they lie ([`crate::samples`]), for a vector of rays at once.
 
+use fearless_simd::{Level, Simd, dispatch};
 use glam::Vec3;
 use lf_compress::{DepthGuide, GuidedCubes};
 use lf_math::{Ray, normalized};
 
 use crate::frame::Environment;
 use crate::guide::guide_ends;
-use crate::surface::{Blend, SurfaceCube};
+use crate::lanes::{Lanes, MAX_LANES, lanes};
+use crate::samples::colors;
+use crate::surface::SurfaceCube;
 
 /// The bracket reaches this share of the distance from the cell's centre beyond what the guide's texels say: the surface goes on
 /// between them. Less misses surfaces seen at grazing angles, more takes steps.
@@ -20,14 +23,16 @@ const MARGIN: f32 = 0.06;
 /// Where the direction from the cubes farthest apart to a point changes by less than this over the bracket (a tangent), one surface is
 /// expected in it: the plane that is seen from its near end is tried at once. More is faster and passes by the rims of things.
 const SHORT: f32 = 0.35;
+/// So many cubes must see the place that is tried at once: two may agree on what lies behind a thing that is seen edge-on.
+const WITNESSES: i32 = 3;
 /// Texels of parallax between the cubes that one step of the search may cross: thinner things can be stepped over.
-const STEP_TEXELS: f32 = 4.0;
+const STEP_TEXELS: f32 = 6.0;
 /// Bounds of the number of steps.
 const STEPS: [f32; 2] = [2.0, 64.0];
 /// Steps where the guide's bracket holds no end.
 const BLIND_STEPS: u32 = 32;
 /// Times that the step in which something is hidden is halved while no place is agreed on.
-const HALVINGS: u32 = 3;
+const HALVINGS: u32 = 5;
 /// A place is in front of what a cube sees if its relative depth is below 1 by this much: what is closer may be the rounding of depths.
 const IN_FRONT: f32 = 3e-3;
 /// Cubes whose relative depths of a place differ from 1 by this much in all agree on it at once.
@@ -49,6 +54,7 @@ pub struct GuidedField {
     /// Half of the texels along an edge: those that a tangent of 1 covers.
     texels: f32,
     far: f32,
+    level: Level,
 }
 
 impl GuidedField {
@@ -61,7 +67,14 @@ impl GuidedField {
             apart: data.reach(),
             texels: 0.5 * data.size() as f32,
             far: data.far(),
+            level: Level::new(),
         }
+    }
+
+    /// Where a ray ends; none for one without a direction or an origin.
+    fn place(&self, ray: &Ray) -> Option<Vec3> {
+        let ray = Ray { origin: ray.origin, direction: normalized(ray.direction)? };
+        ray.origin.is_finite().then(|| self.end(&ray))
     }
 
     /// Where a ray of unit direction ends, cell space.
@@ -85,16 +98,6 @@ impl GuidedField {
         let blind = (from < far).then(|| search.steps([from, far], BLIND_STEPS)).flatten();
         ray.at(blind.unwrap_or(far))
     }
-
-    /// The colour of a place by all cubes.
-    fn color(&self, place: Vec3) -> Option<Vec3> {
-        let unit = (place - self.cubes[0].position()).abs().max_element();
-        let mut blend = Blend::default();
-        for cube in &self.cubes {
-            cube.add_samples(place, self.far, unit, &mut blend);
-        }
-        blend.color()
-    }
 }
 
 /// The search for a ray's end.
@@ -110,9 +113,12 @@ impl Search<'_> {
     /// so that things would shrink by the rounding of all.
     fn is_free(&mut self, t: f32) -> bool {
         let (place, cubes) = (self.ray.at(t), &self.field.cubes);
-        let others = (0..cubes.len()).filter(|&cube| cube != self.seeing);
-        let mut order = std::iter::once(self.seeing).chain(others);
-        let seeing = order.find(|&cube| cubes[cube].largest_relative_depth(place) < 1.0 - IN_FRONT);
+        let sees = |cube: usize| cubes[cube].largest_relative_depth(place) < 1.0 - IN_FRONT;
+        let seeing = if sees(self.seeing) {
+            Some(self.seeing)
+        } else {
+            (0..cubes.len()).find(|&cube| cube != self.seeing && sees(cube))
+        };
         self.seeing = seeing.unwrap_or(self.seeing);
         seeing.is_some()
     }
@@ -122,8 +128,11 @@ impl Search<'_> {
         let parallax = self.field.apart * (near.recip() - far.recip());
         if parallax < SHORT {
             let met = self.field.cubes[self.seeing].meets(self.ray, self.ray.at(near));
-            if met > near && met < far && self.discord(met) < EXACT {
-                return Some(met);
+            if met > near && met < far {
+                let Witnesses { discord, seeing } = self.witnesses(met);
+                if discord < EXACT && seeing >= WITNESSES {
+                    return Some(met);
+                }
             }
         }
         self.steps([near, far], (parallax * self.field.texels / STEP_TEXELS).ceil().clamp(STEPS[0], STEPS[1]) as u32)
@@ -151,11 +160,15 @@ impl Search<'_> {
         let slack = 0.5 * (hidden - free);
         let span = [(free - slack).max(0.0), hidden + slack];
         let (mut best, mut least) = (hidden, f32::INFINITY);
+        let mut tried = f32::NAN;
         for _ in 0..HALVINGS {
-            for cube in &self.field.cubes {
+            // The same planes are seen from a point that has been tried.
+            let cubes = if hidden == tried { &[] } else { &self.field.cubes[..] };
+            tried = hidden;
+            for cube in cubes {
                 let met = cube.meets(self.ray, self.ray.at(hidden));
                 if met >= span[0] && met <= span[1] {
-                    let discord = self.discord(met);
+                    let discord = self.witnesses(met).discord;
                     if discord < EXACT {
                         return Some(met);
                     }
@@ -170,26 +183,57 @@ impl Search<'_> {
         (least < DISCORD).then_some(best)
     }
 
-    /// How far the two cubes that come nearest to agreeing that the ray ends at a point are from it; infinite if more see past it than see it.
-    fn discord(&self, t: f32) -> f32 {
+    /// What the cubes say of a point: whether the ray ends there.
+    #[inline(always)]
+    fn witnesses(&self, t: f32) -> Witnesses {
         let place = self.ray.at(t);
-        let (mut first, mut second, mut votes) = (f32::INFINITY, f32::INFINITY, 0);
+        let (mut first, mut second, mut seeing, mut past) = (f32::INFINITY, f32::INFINITY, 0, 0);
         for cube in &self.field.cubes {
             let off = cube.relative_depth(place) - 1.0;
-            votes += i32::from(off.abs() < SEEN) - i32::from(off <= -SEEN);
+            seeing += i32::from(off.abs() < SEEN);
+            past += i32::from(off <= -SEEN);
             second = second.min(first.max(off.abs()));
             first = first.min(off.abs());
         }
-        if votes < 0 { f32::INFINITY } else { first + second.min(ALONE) }
+        Witnesses { discord: if past > seeing { f32::INFINITY } else { first + second.min(ALONE) }, seeing }
     }
+}
+
+/// What cubes say of a point.
+struct Witnesses {
+    /// How far the two that come nearest to agreeing that the ray ends there are from it; infinite if more see past it than see it.
+    discord: f32,
+    /// How many see it.
+    seeing: i32,
 }
 
 impl Environment for GuidedField {
     fn look_up(&self, ray: &Ray) -> Option<Vec3> {
-        let ray = Ray { origin: ray.origin, direction: normalized(ray.direction)? };
-        if !ray.origin.is_finite() {
-            return None;
+        let mut answer = [None];
+        self.look_up_all(std::slice::from_ref(ray), &mut answer);
+        answer[0]
+    }
+
+    fn look_up_all(&self, rays: &[Ray], answers: &mut [Option<Vec3>]) {
+        dispatch!(self.level, simd => look_up(simd, self, rays, answers));
+    }
+}
+
+/// Answers a vector of rays after the other.
+#[inline(always)]
+fn look_up<S: Simd>(simd: S, field: &GuidedField, rays: &[Ray], answers: &mut [Option<Vec3>]) {
+    for (rays, answers) in rays.chunks(lanes::<S>()).zip(answers.chunks_mut(lanes::<S>())) {
+        // What is not a number has no colour.
+        let mut places: [Lanes<f32>; 3] = [[f32::NAN; MAX_LANES]; 3];
+        for (lane, ray) in rays.iter().enumerate() {
+            if let Some(end) = field.place(ray) {
+                [places[0][lane], places[1][lane], places[2][lane]] = end.to_array();
+            }
         }
-        self.color(self.end(&ray))
+        let (colors, known) = colors(simd, &field.cubes, &places, field.far);
+        for (lane, answer) in answers.iter_mut().enumerate() {
+            let color = Vec3::new(colors[0][lane], colors[1][lane], colors[2][lane]);
+            *answer = (known >> lane & 1 == 1).then_some(color);
+        }
     }
 }

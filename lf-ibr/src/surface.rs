@@ -5,20 +5,22 @@
 
 use glam::{Vec2, Vec3};
 use lf_compress::PackedCube;
-use lf_compress::bc1::{BLOCK_BYTES, decode_texel};
+use lf_compress::bc1::BLOCK_BYTES;
 use lf_compress::planes::{BLOCK_EDGE, PlaneImage};
-use lf_math::{CubeCoord, Face, Ray, cube_coord, cube_direction};
+use lf_math::{CubeCoord, Face, Ray, cube_direction};
 
-/// Samples closer to a place than this, in texels, count alike. Less picks the nearest sample and shows its noise, more blurs.
-const SHARPNESS: f32 = 0.3;
+use crate::palette::{Block, has_three_colors, words};
+
 /// A ray along which the depth relative to a plane's changes by less than this a metre is taken to be parallel to it: they would meet beyond
 /// any scene, and quotients stay finite, as shaders must have them.
 const PARALLEL: f32 = 1e-20;
+/// Texels along an edge of a block of depths.
+pub(crate) const EDGE: u32 = BLOCK_EDGE as u32;
 
-/// A block: its planes, each as the vector whose dot product with a place, seen from the cube, is the place's depth relative to
+/// A block of depths: its planes, each as the vector whose dot product with a place, seen from the cube, is the place's depth relative to
 /// the plane's, and the texels that show the second.
 #[derive(Debug, Clone, Copy)]
-struct Block {
+struct DepthBlock {
     planes: [Vec3; 2],
     mask: u64,
 }
@@ -31,20 +33,15 @@ pub(crate) struct SurfaceCube {
     size: u32,
     across: u32,
     /// Face after face, row after row.
-    blocks: Vec<Block>,
-    colors: Vec<[u8; BLOCK_BYTES]>,
+    blocks: Vec<DepthBlock>,
+    colors: Vec<Block>,
+    /// Whether any block of the picture has three colours.
+    three: bool,
 }
 
-/// A blend of samples, each weighted by its distance from a place.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Blend {
-    sum: Vec3,
-    weight: f32,
-}
-
-/// Where a direction leads: a face and index coordinates on it, from −½ to half a texel past the last.
+/// Where a direction leads: a face and coordinates on it, in texels from its corner.
 struct Spot {
-    face: usize,
+    face: u32,
     at: Vec2,
 }
 
@@ -52,13 +49,15 @@ impl SurfaceCube {
     /// A cube that has as many texels of depth as of its picture.
     pub(crate) fn new(cube: &PackedCube) -> Self {
         let (size, depths) = (cube.size(), cube.inverse_depths());
-        let colors = cube.radiance().iter().flat_map(|face| face.as_chunks().0);
+        let colors = cube.radiance().iter().flat_map(|face| face.as_chunks::<BLOCK_BYTES>().0);
+        let colors: Vec<Block> = colors.map(words).collect();
         Self {
             position: cube.position(),
             size,
             across: size.div_ceil(BLOCK_EDGE as u32),
             blocks: Face::ALL.into_iter().zip(depths).flat_map(|(face, image)| blocks(face, image)).collect(),
-            colors: colors.copied().collect(),
+            three: colors.iter().any(has_three_colors),
+            colors,
         }
     }
 
@@ -66,91 +65,115 @@ impl SurfaceCube {
         self.position
     }
 
-    #[inline]
-    fn spot(&self, away: Vec3) -> Option<Spot> {
-        let CubeCoord { face, uv } = cube_coord(away)?;
-        Some(Spot { face: usize::from(face.index()), at: uv * self.size as f32 - 0.5 })
+    /// Texels along an edge of a face.
+    pub(crate) fn size(&self) -> u32 {
+        self.size
     }
 
-    /// The plane that a texel shows.
-    fn plane(&self, face: usize, [x, y]: [u32; 2]) -> Vec3 {
-        let edge = BLOCK_EDGE as u32;
-        let block = &self.blocks[((face as u32 * self.across + y / edge) * self.across + x / edge) as usize];
-        block.planes[(block.mask >> (y % edge * edge + x % edge) & 1) as usize]
+    /// Blocks of depths along an edge of a face.
+    pub(crate) fn across(&self) -> u32 {
+        self.across
     }
 
-    /// The colour of a texel, 0 … 255.
-    fn color(&self, face: usize, [x, y]: [u32; 2]) -> Vec3 {
-        let across = self.size.div_ceil(4);
-        let block = &self.colors[((face as u32 * across + y / 4) * across + x / 4) as usize];
-        let [r, g, b, _] = decode_texel(block, x as usize % 4, y as usize % 4);
-        Vec3::new(f32::from(r), f32::from(g), f32::from(b))
+    /// As `lf_math::cube_coord` has it. Of no direction, or what is not finite, it is anywhere.
+    #[inline(always)]
+    fn spot(&self, away: Vec3) -> Spot {
+        let (a, Vec3 { x, y, z }) = (away.abs(), away);
+        let (face, right, down, forward) = if a.x >= a.y && a.x >= a.z {
+            if x < 0.0 { (1, z, -y, a.x) } else { (0, -z, -y, a.x) }
+        } else if a.y >= a.z {
+            if y < 0.0 { (3, x, -z, a.y) } else { (2, x, z, a.y) }
+        } else if z < 0.0 {
+            (5, -x, -y, a.z)
+        } else {
+            (4, x, -y, a.z)
+        };
+        let half = 0.5 * self.size as f32;
+        Spot { face, at: half + Vec2::new(right, down) * (half / forward) }
     }
 
-    /// The plane seen in the direction of a place; none for the position itself or what is not finite.
-    fn nearest_plane(&self, away: Vec3) -> Option<Vec3> {
-        let Spot { face, at } = self.spot(away)?;
-        Some(self.plane(face, (at + 0.5).to_array().map(|at| (at as u32).min(self.size - 1))))
+    /// The number of the block that holds a texel.
+    #[inline(always)]
+    fn block(&self, face: u32, [x, y]: [u32; 2]) -> usize {
+        ((face * self.across + y / EDGE) * self.across + x / EDGE) as usize
     }
 
-    /// The four texels around, their numbers kept within the face.
-    fn around(&self, at: Vec2) -> [[u32; 2]; 4] {
-        // Half a texel from the face's edge there is only one neighbour: the cast of −½ and of the 0 above it is 0.
-        let low = at.to_array().map(|at| at as u32);
-        let high = at.to_array().map(|at| ((at + 1.0) as u32).min(self.size - 1));
-        [[low[0], low[1]], [high[0], low[1]], [low[0], high[1]], [high[0], high[1]]]
+    /// One of the planes of a block, by its texel's bit.
+    #[inline(always)]
+    pub(crate) fn plane_of(&self, block: usize, bit: u32) -> Vec3 {
+        self.blocks.get(block).map_or(Vec3::ZERO, |block| block.planes[(block.mask >> bit & 1) as usize])
+    }
+
+    /// Whether any block of the picture has three colours.
+    pub(crate) fn has_three_colors(&self) -> bool {
+        self.three
+    }
+
+    /// A block of the picture.
+    #[inline(always)]
+    pub(crate) fn color_block(&self, number: usize) -> Block {
+        self.colors.get(number).copied().unwrap_or_default()
+    }
+
+    /// The plane seen in the direction of a place.
+    #[inline(always)]
+    fn nearest_plane(&self, away: Vec3) -> Vec3 {
+        let Spot { face, at } = self.spot(away);
+        let texel = at.to_array().map(|at| (at as u32).min(self.size - 1));
+        self.plane_of(self.block(face, texel), bit(texel))
     }
 
     /// How deep a place of cell space is, as a multiple of what the nearest texel shows: less than 1 in front of it.
+    #[inline(always)]
     pub(crate) fn relative_depth(&self, place: Vec3) -> f32 {
         let away = place - self.position;
-        self.nearest_plane(away).map_or(0.0, |plane| plane.dot(away))
+        self.nearest_plane(away).dot(away)
     }
 
     /// The same by the nearest thing that any of the four texels around shows: things are half a texel wider.
+    #[inline(always)]
     pub(crate) fn largest_relative_depth(&self, place: Vec3) -> f32 {
         let away = place - self.position;
-        let Some(Spot { face, at }) = self.spot(away) else { return 0.0 };
-        self.around(at).map(|texel| self.plane(face, texel).dot(away)).into_iter().fold(0.0, f32::max)
+        let Spot { face, at } = self.spot(away);
+        // Half a texel from the face's edge there is only one neighbour: the cast of −½ and of the 0 above it is 0.
+        let low = (at - 0.5).to_array().map(|at| at as u32);
+        let high = (at + 0.5).to_array().map(|at| (at as u32).min(self.size - 1));
+        let texels = [low, [high[0], low[1]], [low[0], high[1]], high];
+        if (low[0] ^ high[0] | low[1] ^ high[1]) < EDGE {
+            // Mostly they are in one block.
+            return self.largest_in_block(self.block(face, low), texels.map(bit), away);
+        }
+        texels.map(|texel| self.plane_of(self.block(face, texel), bit(texel)).dot(away)).into_iter().fold(0.0, f32::max)
+    }
+
+    /// The largest relative depth by some of a block's texels.
+    #[inline(always)]
+    fn largest_in_block(&self, block: usize, bits: [u32; 4], away: Vec3) -> f32 {
+        let Some(DepthBlock { planes, mask }) = self.blocks.get(block) else { return 0.0 };
+        match bits.map(|bit| mask >> bit & 1).into_iter().sum::<u64>() {
+            0 => planes[0].dot(away),
+            4 => planes[1].dot(away),
+            _ => planes[0].dot(away).max(planes[1].dot(away)),
+        }
     }
 
     /// How far along a ray it meets the plane that the cube sees in the direction of a place; infinitely far behind its start if it never
     /// does.
+    #[inline(always)]
     pub(crate) fn meets(&self, ray: &Ray, place: Vec3) -> f32 {
-        let plane = self.nearest_plane(place - self.position).unwrap_or(Vec3::ZERO);
+        let plane = self.nearest_plane(place - self.position);
         let along = plane.dot(ray.direction);
         if along.abs() < PARALLEL {
             return f32::NEG_INFINITY;
         }
         (1.0 - plane.dot(ray.origin - self.position)) / along
     }
-
-    /// Adds the four texels around a place, each by its distance from it on the surface it shows (Shepard 1968, exponent 4): what lies on
-    /// another surface is far away. `far` is the depth of what is deeper or infinitely deep, `unit` a length to measure in.
-    pub(crate) fn add_samples(&self, place: Vec3, far: f32, unit: f32, blend: &mut Blend) {
-        let away = place - self.position;
-        let Some(Spot { face, at }) = self.spot(away) else { return };
-        let (texel, scale, least) = (2.0 / self.size as f32, unit.recip(), far.recip());
-        let place = scale * away;
-        let blur = (SHARPNESS * texel * place.abs().max_element()).powi(2);
-        let [forward, right, down] = axes(Face::ALL[face]);
-        for [x, y] in self.around(at) {
-            let of_middle = |i: u32| texel * (i as f32 + 0.5) - 1.0;
-            let direction = forward + of_middle(x) * right + of_middle(y) * down;
-            let seen = (scale / self.plane(face, [x, y]).dot(direction).max(least)) * direction;
-            let apart = (seen - place).length_squared() + blur;
-            let weight = (apart * apart).recip();
-            blend.sum += weight * self.color(face, [x, y]);
-            blend.weight += weight;
-        }
-    }
 }
 
-impl Blend {
-    /// The blend, 0 … 1; `None` without samples.
-    pub(crate) fn color(self) -> Option<Vec3> {
-        (self.weight > 0.0).then(|| self.sum / (255.0 * self.weight))
-    }
+/// A texel's bit in its block's mask.
+#[inline(always)]
+fn bit([x, y]: [u32; 2]) -> u32 {
+    y % EDGE * EDGE + x % EDGE
 }
 
 /// Unit vectors to a face's middle, and from there to the right and down.
@@ -162,7 +185,7 @@ fn axes(face: Face) -> [Vec3; 3] {
 }
 
 /// The blocks of a face. Its image's function m + x·a + y·b of the texel, times the depth along the face's axis, is linear in the place.
-fn blocks(face: Face, image: &PlaneImage) -> impl Iterator<Item = Block> {
+fn blocks(face: Face, image: &PlaneImage) -> impl Iterator<Item = DepthBlock> {
     let (half, across) = (0.5 * image.width() as f32, image.width().div_ceil(BLOCK_EDGE as u32));
     let [forward, right, down] = axes(face);
     (0..).zip(image.blocks()).map(move |(number, block)| {
@@ -172,6 +195,6 @@ fn blocks(face: Face, image: &PlaneImage) -> impl Iterator<Item = Block> {
             let [first, dx, dy] = plane.coefficients().map(|value| value * image.scale());
             half * (dx * right + dy * down) + (first + middle.x * dx + middle.y * dy) * forward
         };
-        Block { planes: block.planes.map(plane), mask: block.mask }
+        DepthBlock { planes: block.planes.map(plane), mask: block.mask }
     })
 }

@@ -42,18 +42,21 @@ impl SampledAxis {
     }
 
     /// Coordinate of sample 0.
+    #[inline]
     #[must_use]
     pub fn first(&self) -> f32 {
         self.first
     }
 
     /// Distance between neighbouring samples, greater than 0.
+    #[inline]
     #[must_use]
     pub fn step(&self) -> f32 {
         self.step
     }
 
     /// Number of samples, at least 1.
+    #[inline]
     #[must_use]
     pub fn count(&self) -> u32 {
         self.count
@@ -66,6 +69,7 @@ impl SampledAxis {
     }
 
     /// Index of the last sample, `count − 1`.
+    #[inline]
     #[must_use]
     pub fn last_index(&self) -> f32 {
         (self.count - 1) as f32
@@ -78,6 +82,7 @@ impl SampledAxis {
     }
 
     /// Real-valued sample index of a coordinate (Eq. 1). Forward error: at most 2 ulp of `|x| + |first|`, in steps.
+    #[inline]
     #[must_use]
     pub fn index(&self, coord: f32) -> f32 {
         (coord - self.first) / self.step

@@ -74,6 +74,7 @@ impl Cell {
     /// outside. The result is therefore clamped to where the line enters and leaves the slab of its dominant axis.
     ///
     /// Returns `None` for a direction that is zero or not finite, or an origin that is not finite.
+    #[inline]
     #[must_use]
     pub fn exit(&self, ray: &Ray) -> Option<f32> {
         let axis = crate::Face::dominant(ray.direction).filter(|_| ray.origin.is_finite())?.axis();

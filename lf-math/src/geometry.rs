@@ -101,12 +101,14 @@ impl LightFieldGeometry {
     }
 
     /// The cell.
+    #[inline]
     #[must_use]
     pub fn cell(&self) -> &Cell {
         &self.cell
     }
 
     /// The slabs, in the order of their faces.
+    #[inline]
     #[must_use]
     pub fn slabs(&self) -> &[Slab] {
         &self.slabs
@@ -115,6 +117,7 @@ impl LightFieldGeometry {
     /// The slab of a ray's dominant direction and the ray's indices there; `None` if the direction is zero or not finite
     /// or no slab serves it. The indices may lie outside the slab, and are not numbers if the origin is not finite: see
     /// [`Slab::contains`], which is false then.
+    #[inline]
     #[must_use]
     pub fn index_ray(&self, ray: &Ray) -> Option<IndexedRay> {
         let face = Face::dominant(ray.direction)?;

@@ -13,6 +13,7 @@ pub struct Ray {
 
 impl Ray {
     /// The point `origin + t·direction`.
+    #[inline]
     #[must_use]
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + self.direction * t
@@ -31,6 +32,7 @@ pub fn reflect(incident: Vec3, unit_normal: Vec3) -> Vec3 {
 /// The unit vector of `v`, or `None` if `v` is zero or not finite.
 ///
 /// Scales by the largest component first, so that neither 1e-30 nor 1e30 leaves the range of `f32`.
+#[inline]
 #[must_use]
 pub fn normalized(v: Vec3) -> Option<Vec3> {
     let largest = v.abs().max_element();

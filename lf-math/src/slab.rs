@@ -63,12 +63,14 @@ impl Slab {
     }
 
     /// The face direction this slab serves.
+    #[inline]
     #[must_use]
     pub fn face(&self) -> Face {
         self.face
     }
 
     /// Coordinate of the camera plane along the face's axis, metres, cell space.
+    #[inline]
     #[must_use]
     pub fn plane(&self) -> f32 {
         self.plane
@@ -101,12 +103,14 @@ impl Slab {
     }
 
     /// Number of camera images.
+    #[inline]
     #[must_use]
     pub fn cameras(&self) -> [u32; 2] {
         self.st.map(|axis| axis.count())
     }
 
     /// Texels of one camera image.
+    #[inline]
     #[must_use]
     pub fn resolution(&self) -> [u32; 2] {
         self.uv.map(|axis| axis.count())
@@ -127,6 +131,7 @@ impl Slab {
     ///
     /// `direction` must have its component of largest magnitude on this slab's axis and towards its face; then every
     /// quotient is at most 1 and the result is finite for every finite origin that is not astronomically far away.
+    #[inline]
     #[must_use]
     pub fn index_ray(&self, ray: &Ray) -> SlabCoord {
         let k = self.face.axis();
@@ -149,6 +154,7 @@ impl Slab {
     /// A ray through `s` with slope `u` meets depth D at `s + D·u`; camera `sᵢ` sees that point along
     /// `u + (s − sᵢ)/D`. In index units that is `step_s / (D·step_u)` texels per camera. The paper's `disparity`
     /// (Eq. 6) multiplies `sᵢ − s`, so it is this number with the opposite sign.
+    #[inline]
     #[must_use]
     pub fn disparity(&self) -> Vec2 {
         let per_step = |i: usize| self.focal_depth.map_or(0.0, |depth| self.st[i].step() / depth / self.uv[i].step());
@@ -157,6 +163,7 @@ impl Slab {
 
     /// [`Self::disparity`] of a plane at any inverse depth, 1/m: 0 is infinity, and of pictures that were rectified to agree on
     /// a plane, what lies behind it has a negative one.
+    #[inline]
     #[must_use]
     pub fn disparity_at(&self, inverse_depth: f32) -> Vec2 {
         let per_step = |i: usize| self.st[i].step() * inverse_depth / self.uv[i].step();
@@ -167,12 +174,14 @@ impl Slab {
     ///
     /// Indices outside the slab are clamped to its edge; ask [`Self::contains`] first where that matters. On an axis with
     /// a single camera both neighbours are that camera.
+    #[inline]
     #[must_use]
     pub fn taps(&self, coord: &SlabCoord) -> [CameraTap; 4] {
         self.taps_with(coord, self.disparity())
     }
 
     /// As [`Self::taps`], with a disparity other than that of the focal plane.
+    #[inline]
     #[must_use]
     pub fn taps_with(&self, coord: &SlabCoord, disparity: Vec2) -> [CameraTap; 4] {
         let last = |axes: &[SampledAxis; 2]| Vec2::new(axes[0].last_index(), axes[1].last_index());

@@ -33,8 +33,8 @@ const PROBE_HALVINGS: u32 = 6;
 const PROBES_AT: f32 = 0.7;
 /// One of the guided cubes stands in the middle, four at corners of a cube this large.
 const GUIDED_AT: f32 = 0.9;
-/// Cameras and texels of the guide, per axis. More of them gain nothing in the museum.
-const GUIDE: [u32; 2] = [6, 24];
+/// Cameras and texels of the guide, per axis. More of them gain nothing in the museum; the bytes serve the cubes better.
+const GUIDE: [u32; 2] = [6, 20];
 /// One ray a texel: several cubes make up for each other's gaps, and means of four would be blurred twice (a decibel in the museum).
 const GUIDED_GRID: u32 = 1;
 
@@ -339,5 +339,5 @@ fn cube_size(bytes: f64) -> u32 {
 /// A cube as the device holds it.
 fn capture(source: &Source, place: Vec3, size: u32, grid: u32) -> Result<PackedCube> {
     let cube = capture_distance_cube(&source.tracer, &source.cell, place, [size; 2], grid)?;
-    Ok(PackedCube::encode(&cube, Quality::High)?)
+    Ok(PackedCube::encode(&cube, Quality::Best)?)
 }

@@ -23,15 +23,24 @@ struct Search {
     seeing: u32,
 }
 
+// What cubes say of a place.
+struct Witnesses {
+    // How far the two that come nearest to agreeing that a ray ends there are from it; infinite if more see past it than see it.
+    discord: f32,
+    // How many see it.
+    seeing: i32,
+}
+
 @group(0) @binding(8) var<uniform> guided: Guided;
 
 const MARGIN = 0.06;
 const SHORT = 0.35;
-const STEP_TEXELS = 4.0;
+const WITNESSES = 3;
+const STEP_TEXELS = 6.0;
 const LEAST_STEPS = 2.0;
 const MOST_STEPS = 64.0;
 const BLIND_STEPS = 32u;
-const HALVINGS = 3u;
+const HALVINGS = 5u;
 const IN_FRONT = 3e-3;
 const EXACT = 1e-3;
 const SEEN = 0.01;
@@ -108,8 +117,11 @@ fn within(search: ptr<function, Search>, near: f32, far: f32) -> f32 {
     let parallax = guided.reach * (1.0 / near - 1.0 / far);
     if parallax < SHORT {
         let met = meets((*search).seeing, (*search).origin, (*search).direction, place_at(search, near));
-        if met > near && met < far && discord(place_at(search, met)) < EXACT {
-            return met;
+        if met > near && met < far {
+            let said = witnesses(place_at(search, met));
+            if said.discord < EXACT && said.seeing >= WITNESSES {
+                return met;
+            }
         }
     }
     let count = ceil(parallax * 0.5 * f32(cubes[0].size) / STEP_TEXELS);
@@ -141,11 +153,13 @@ fn agreed(search: ptr<function, Search>, last: f32, next: f32) -> f32 {
     var hidden = next;
     var best = next;
     var least = INFINITE;
+    // The same planes are seen from a point that has been tried.
+    var is_new = true;
     for (var i = 0u; i < HALVINGS; i++) {
-        for (var cube = 0u; cube < arrayLength(&cubes); cube++) {
+        for (var cube = 0u; cube < arrayLength(&cubes) && is_new; cube++) {
             let met = meets(cube, (*search).origin, (*search).direction, place_at(search, hidden));
             if met >= span.x && met <= span.y {
-                let apart = discord(place_at(search, met));
+                let apart = witnesses(place_at(search, met)).discord;
                 if apart < EXACT {
                     return met;
                 }
@@ -156,27 +170,30 @@ fn agreed(search: ptr<function, Search>, last: f32, next: f32) -> f32 {
             }
         }
         let middle = 2.0 / (1.0 / free + 1.0 / hidden);
-        if is_free(search, middle) {
-            free = middle;
-        } else {
+        is_new = !is_free(search, middle);
+        if is_new {
             hidden = middle;
+        } else {
+            free = middle;
         }
     }
     return select(NOT_FOUND, best, least < DISCORD);
 }
 
-// How far the two cubes that come nearest to agreeing that a ray ends at a place are from it; infinite if more see past it than see it.
-fn discord(place: vec3f) -> f32 {
+// What the cubes say of a place: whether a ray ends there.
+fn witnesses(place: vec3f) -> Witnesses {
     var first = INFINITE;
     var second = INFINITE;
-    var votes = 0;
+    var seeing = 0;
+    var past = 0;
     for (var cube = 0u; cube < arrayLength(&cubes); cube++) {
         let off = relative_depth(cube, place) - 1.0;
-        votes += i32(abs(off) < SEEN) - i32(off <= -SEEN);
+        seeing += i32(abs(off) < SEEN);
+        past += i32(off <= -SEEN);
         second = min(second, max(first, abs(off)));
         first = min(first, abs(off));
     }
-    return select(first + min(second, ALONE), INFINITE, votes < 0);
+    return Witnesses(select(first + min(second, ALONE), INFINITE, past > seeing), seeing);
 }
 
 // The colour of a place by all cubes.

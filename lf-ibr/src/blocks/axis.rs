@@ -5,7 +5,7 @@ use std::ops::Range;
 use fearless_simd::prelude::*;
 use lf_math::{SampledAxis, Windows};
 
-use super::lanes::{F, Lanes, M, MAX_LANES, U, lanes, real, slot, to_lanes, transpose, whole};
+use crate::lanes::{F, Lanes, M, MAX_LANES, U, lanes, real, slot, to_lanes, transpose, whole};
 
 /// Cameras, slopes and windows along an axis.
 #[derive(Debug, Clone)]

@@ -5,8 +5,8 @@ use glam::Vec3;
 use lf_math::Ray;
 
 use super::kernel::{Colors, Fetched, answer};
-use super::lanes::{Lanes, MAX_LANES, U, lanes, load, to_lanes};
 use super::storage::SlabBlocks;
+use crate::lanes::{Lanes, MAX_LANES, U, lanes, load, to_lanes};
 
 /// In place of the number of a face: there is none.
 const NO_FACE: usize = 6;

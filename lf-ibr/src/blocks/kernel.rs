@@ -5,9 +5,9 @@ use glam::Vec3;
 
 use super::axis::Neighbour;
 use super::bins::Rays;
-use super::lanes::{F, Lanes, MAX_LANES, U, lanes, load, load_u32, slot, to_lanes, transpose};
-use super::palette::Ends;
-use super::storage::{ABSENT, BAND, Block, SlabBlocks};
+use super::storage::{ABSENT, BAND, SlabBlocks};
+use crate::lanes::{F, Lanes, MAX_LANES, U, lanes, load, load_u32, slot, to_lanes, transpose};
+use crate::palette::{Block, Ends};
 
 /// Two blocks side by side, for each lane.
 type Row = Lanes<[Block; 2]>;

@@ -1,12 +1,11 @@
 //! A slab's blocks in memory.
 
-use std::cmp::Ordering;
-
 use lf_compress::format::{CameraPlace, SlabTiling, TexelEncoding};
 use lf_compress::{PackError, PackedLightField};
 use lf_math::{Face, Slab};
 
 use super::axis::Axis;
+use crate::palette::{Block, has_three_colors, words};
 
 /// In place of where a camera's blocks begin: there are none.
 pub(super) const ABSENT: u32 = u32::MAX;
@@ -14,9 +13,6 @@ pub(super) const ABSENT: u32 = u32::MAX;
 /// Rows of cameras in a band. What a ray needs of its four images is so mostly in one page of memory: in 4 KiB there is a row of blocks of
 /// 4×4 images that are 32 blocks wide. More rows would have fewer columns in a page.
 pub(super) const BAND: u32 = 4;
-
-/// A block: its two endpoints, the first in the low half, and an index or code for each texel, texel 0 lowest.
-pub(super) type Block = [u32; 2];
 
 /// One slab. Whole images are [`interleaved`]; of others, camera after camera (s fastest), the window that is there, row of blocks
 /// after row.
@@ -27,7 +23,7 @@ pub(super) struct SlabBlocks {
     pub(super) axes: [Axis; 2],
     /// Where each camera's blocks begin; empty if all images are whole.
     pub(super) starts: Vec<u32>,
-    /// [`recode`]d blocks. Two more than there are, so that two can be read at each, and if there is none.
+    /// Recoded blocks ([`words`]). Two more than there are, so that two can be read at each, and if there is none.
     pub(super) blocks: Vec<Block>,
     /// Whether any block has three colours.
     pub(super) three: bool,
@@ -98,33 +94,4 @@ fn append_window(blocks: &mut Vec<Block>, place: &CameraPlace, tile: &[u8], widt
     for row in rows.skip(y).take(down) {
         blocks.extend(row[x..][..across].iter().map(words));
     }
-}
-
-fn words(&[a, b, c, d, e, f, g, h]: &[u8; 8]) -> Block {
-    recode([u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])])
-}
-
-/// A BC1 block's texels, with codes for indices that are the share of the second endpoint: in thirds, or, if the block
-/// [`has_three_colors`], in halves, where 3 is black.
-///
-/// Few blocks need three colours: those of one colour and those of endpoints alone do not.
-pub(super) fn recode([ends, indices]: Block) -> Block {
-    const LOW: u32 = 0x5555_5555;
-    let (low, high) = (indices & LOW, indices >> 1 & LOW);
-    let (first, second) = (ends & 0xffff, ends >> 16);
-    let black = low & high;
-    match first.cmp(&second) {
-        Ordering::Greater => [ends, low << 1 | (low ^ high)],
-        // Of one colour.
-        Ordering::Equal if black == 0 => [ends, 0],
-        Ordering::Equal => [second << 16, (LOW ^ black) << 1],
-        // Of endpoints only.
-        Ordering::Less if high == 0 => [ends.rotate_left(16), (low ^ LOW) * 3],
-        Ordering::Less => [ends, low << 1 | high],
-    }
-}
-
-/// Whether a recoded block has two endpoints, what is half way between them, and black.
-pub(super) fn has_three_colors(&[ends, _]: &Block) -> bool {
-    ends & 0xffff < ends >> 16
 }

@@ -5,51 +5,51 @@
 
 use fearless_simd::prelude::*;
 
-pub(super) type F<S> = <S as Simd>::f32s;
-pub(super) type I<S> = <S as Simd>::i32s;
-pub(super) type U<S> = <S as Simd>::u32s;
+pub(crate) type F<S> = <S as Simd>::f32s;
+pub(crate) type I<S> = <S as Simd>::i32s;
+pub(crate) type U<S> = <S as Simd>::u32s;
 /// Two 16-bit numbers per ray, the first in the low half.
-pub(super) type Pairs<S> = <S as Simd>::u16s;
+pub(crate) type Pairs<S> = <S as Simd>::u16s;
 /// The same, signed.
-pub(super) type Shorts<S> = <S as Simd>::i16s;
-pub(super) type M<S> = <S as Simd>::mask32s;
+pub(crate) type Shorts<S> = <S as Simd>::i16s;
+pub(crate) type M<S> = <S as Simd>::mask32s;
 
 /// The most lanes that any machine has.
-pub(super) const MAX_LANES: usize = 16;
+pub(crate) const MAX_LANES: usize = 16;
 
 /// A number for each lane.
-pub(super) type Lanes<T> = [T; MAX_LANES];
+pub(crate) type Lanes<T> = [T; MAX_LANES];
 
 /// Rays that are answered together.
-pub(super) const fn lanes<S: Simd>() -> usize {
+pub(crate) const fn lanes<S: Simd>() -> usize {
     <F<S> as SimdBase<S>>::LEN
 }
 
 #[inline(always)]
-pub(super) fn load<S: Simd>(simd: S, values: &Lanes<f32>) -> F<S> {
+pub(crate) fn load<S: Simd>(simd: S, values: &Lanes<f32>) -> F<S> {
     F::<S>::from_slice(simd, &values[..lanes::<S>()])
 }
 
 #[inline(always)]
-pub(super) fn load_u32<S: Simd>(simd: S, values: &Lanes<u32>) -> U<S> {
+pub(crate) fn load_u32<S: Simd>(simd: S, values: &Lanes<u32>) -> U<S> {
     U::<S>::from_slice(simd, &values[..lanes::<S>()])
 }
 
 #[inline(always)]
-pub(super) fn to_lanes<S: Simd>(values: U<S>) -> Lanes<u32> {
+pub(crate) fn to_lanes<S: Simd>(values: U<S>) -> Lanes<u32> {
     let mut out = [0; MAX_LANES];
     values.store_slice(&mut out[..lanes::<S>()]);
     out
 }
 
 /// Where the four numbers of a lane go for [`transpose`], so that none has to leave its 128 bits, which would take twice the shuffles.
-pub(super) const fn slot<S: Simd>(lane: usize) -> usize {
+pub(crate) const fn slot<S: Simd>(lane: usize) -> usize {
     lane % 4 * (lanes::<S>() / 4) + lane / 4
 }
 
 /// Four numbers of each lane, from one [`slot`] each (Eklundh 1972: 1×1, then 2×2 numbers change places).
 #[inline(always)]
-pub(super) fn transpose<S: Simd>(simd: S, values: &[[u32; 2]]) -> [U<S>; 4] {
+pub(crate) fn transpose<S: Simd>(simd: S, values: &[[u32; 2]]) -> [U<S>; 4] {
     let n = lanes::<S>();
     let values = values.as_flattened();
     let a = U::<S>::from_slice(simd, &values[..n]);
@@ -70,13 +70,13 @@ fn exchange<S: Simd, const NEAR: usize, const BACK: usize>(a: U<S>, b: U<S>, mas
 
 /// Non-negative integers below 2²⁴ as such.
 #[inline(always)]
-pub(super) fn whole<S: Simd>(values: F<S>) -> U<S> {
+pub(crate) fn whole<S: Simd>(values: F<S>) -> U<S> {
     values.to_int::<I<S>>().bitcast()
 }
 
 /// The other way.
 #[inline(always)]
-pub(super) fn real<S: Simd>(values: U<S>) -> F<S> {
+pub(crate) fn real<S: Simd>(values: U<S>) -> F<S> {
     let values: I<S> = values.bitcast();
     values.to_float()
 }
