@@ -1,12 +1,11 @@
 //! Reflections from distance cubes: one, or several that fill each other's gaps.
 
 use glam::Vec3;
-use lf_math::{DistanceCube, GeometryError, Ray, Search, normalized};
+use lf_math::{DistanceCube, GeometryError, Ray, Search, normalized, sphere_exit};
 
 use crate::cube::CubeField;
 use crate::frame::Environment;
 use crate::march::{IN_FRONT, crossing};
-use crate::proxy::sphere_exit;
 
 /// How far behind a surface, as a share of its depth, a ray may be found that is taken to have met it. Farther behind, it passed in
 /// the shadow of something nearer.

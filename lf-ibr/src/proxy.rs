@@ -4,7 +4,7 @@
 //! scene is a room of that shape; whatever stands in the room is painted on its walls.
 
 use glam::Vec3;
-use lf_math::{Ray, normalized};
+use lf_math::{Ray, normalized, sphere_exit};
 
 use crate::cube::CubeField;
 use crate::frame::Environment;
@@ -62,17 +62,6 @@ impl Environment for SphereCube {
         let met = sphere_exit(from, direction, self.radius).map(|t| from + t * direction);
         self.cube.look_up(&Ray { origin: self.center, direction: met.unwrap_or(direction) })
     }
-}
-
-/// How far along a unit direction a line leaves the sphere around the origin; `None` if it passes it by.
-///
-/// The discriminant is that of the point of the line nearest to the centre, not b² − c, which cancels far from the sphere.
-#[inline]
-pub(crate) fn sphere_exit(from: Vec3, direction: Vec3, radius: f32) -> Option<f32> {
-    let along = from.dot(direction);
-    let nearest = from - along * direction;
-    let half_chord = (radius + nearest.length()) * (radius - nearest.length());
-    (half_chord >= 0.0).then(|| half_chord.sqrt() - along)
 }
 
 #[cfg(test)]

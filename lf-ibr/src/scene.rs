@@ -4,7 +4,9 @@
 //! `SlabRenderer` in lf-gpu. Reflectors do not show each other.
 
 use glam::Vec3;
-use lf_math::{GeometryError, Image, NormalMap, Pinhole, Placement, Reflectance, TriangleMesh, srgb_from_linear};
+use lf_math::{
+    GeometryError, Image, NormalMap, Pinhole, Placement, Reflectance, TriangleMesh, length, srgb_from_linear,
+};
 use rayon::prelude::*;
 
 use crate::frame::{Environment, encode};
@@ -78,7 +80,7 @@ fn mirrored(
     if mirror.reflectance == Reflectance::MIRROR {
         return environment.look_up(&ray);
     }
-    let shares = mirror.reflectance.at(ray.direction.dot(normal) / ray.direction.length());
+    let shares = mirror.reflectance.at(ray.direction.dot(normal) / length(ray.direction));
     let light = shares * environment.radiance(&ray)?;
     Some(Vec3::from(light.to_array().map(srgb_from_linear)))
 }

@@ -73,7 +73,8 @@ impl Cell {
     /// point where it leaves the first of the three slabs. A component of zero contributes +∞ inside its slab and −∞
     /// outside. The result is therefore clamped to where the line enters and leaves the slab of its dominant axis.
     ///
-    /// Returns `None` for a direction that is zero or not finite, or an origin that is not finite.
+    /// Returns `None` for a direction that is zero or not finite, an origin that is not finite, or a parameter that is beyond
+    /// the range of `f32`, which takes a direction shorter than 1e-38 times the way.
     #[inline]
     #[must_use]
     pub fn exit(&self, ray: &Ray) -> Option<f32> {
@@ -84,7 +85,7 @@ impl Cell {
         let bounded = Vec3::from_array(exits.to_array().map(|t| if t.is_nan() { f32::INFINITY } else { t }));
         let leave = bounded[axis];
         let enter = (-towards[axis] - ray.origin[axis]) / ray.direction[axis];
-        Some(bounded.min_element().clamp(enter, leave))
+        Some(bounded.min_element().clamp(enter, leave)).filter(|t| t.is_finite())
     }
 }
 
@@ -119,6 +120,7 @@ mod tests {
             assert_eq!(unit_cell().exit(&Ray { origin: Vec3::ZERO, direction }), None);
         }
         assert_eq!(unit_cell().exit(&Ray { origin: Vec3::NAN, direction: Vec3::X }), None);
+        assert_eq!(unit_cell().exit(&Ray { origin: Vec3::ZERO, direction: Vec3::X * 1e-39 }), None);
     }
 
     #[test]

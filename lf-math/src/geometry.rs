@@ -114,15 +114,16 @@ impl LightFieldGeometry {
         &self.slabs
     }
 
-    /// The slab of a ray's dominant direction and the ray's indices there; `None` if the direction is zero or not finite
-    /// or no slab serves it. The indices may lie outside the slab, and are not numbers if the origin is not finite: see
-    /// [`Slab::contains`], which is false then.
+    /// The slab of a ray's dominant direction and the ray's indices there, which are finite; `None` if the direction is zero
+    /// or not finite, no slab serves it, or the origin is not finite or so far away that an index is not. The indices may lie
+    /// outside the slab: see [`Slab::contains`].
     #[inline]
     #[must_use]
     pub fn index_ray(&self, ray: &Ray) -> Option<IndexedRay> {
         let face = Face::dominant(ray.direction)?;
         let slab = self.slabs.iter().position(|slab| slab.face() == face)?;
-        Some(IndexedRay { slab, coord: self.slabs[slab].index_ray(ray) })
+        let coord = self.slabs[slab].index_ray(ray);
+        (coord.st.is_finite() && coord.uv.is_finite()).then_some(IndexedRay { slab, coord })
     }
 
     /// The stored ray of a sample as it is captured: from the point where it leaves the cell, so that objects standing
@@ -184,6 +185,16 @@ mod tests {
         assert_eq!(only_z.index_ray(&ray(Vec3::Z)).map(|r| r.slab), Some(0));
         assert_eq!(only_z.index_ray(&ray(-Vec3::Z)), None);
         assert_eq!(field.index_ray(&ray(Vec3::ZERO)), None);
+    }
+
+    #[test]
+    fn rays_from_nowhere_are_answered_by_nothing() {
+        let field = around(Vec3::ONE, PlanePlacement::CellCenter);
+        for origin in [Vec3::NAN, Vec3::INFINITY, Vec3::new(0.0, f32::NEG_INFINITY, 0.0), Vec3::splat(f32::MAX)] {
+            assert_eq!(field.index_ray(&Ray { origin, direction: Vec3::new(0.1, 0.2, 1.0) }), None, "{origin}");
+        }
+        let far = Ray { origin: Vec3::splat(1e30), direction: Vec3::new(0.1, 0.2, 1.0) };
+        assert!(field.index_ray(&far).is_some_and(|indexed| !field.slabs()[indexed.slab].contains(&indexed.coord)));
     }
 
     proptest! {

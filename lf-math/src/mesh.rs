@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use crate::error::{GeometryError, finite, positive};
-use crate::{Placement, normalized};
+use crate::scale::to_one;
+use crate::{Placement, length, normalized};
 
 /// An indexed triangle mesh. Every index is in range, every position finite, every normal of unit length.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,10 +48,13 @@ impl TriangleMesh {
 
     /// Unit vertex normals: the mean of the adjacent triangles' normals weighted by area, +Y where they cancel.
     fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+        // Areas are products of lengths: kept in range by a power of two, which rounds nothing.
+        let reach = positions.iter().fold(0.0f32, |reach, p| reach.max((*p - positions[0]).abs().max_element()));
+        let scale = to_one(reach);
         let mut sums = alloc::vec![Vec3::ZERO; positions.len()];
         for triangle in triangles {
             let [a, b, c] = triangle.map(|i| positions[i as usize]);
-            let weighted = (b - a).cross(c - a);
+            let weighted = ((b - a) * scale).cross((c - a) * scale);
             for &i in triangle {
                 sums[i as usize] += weighted;
             }
@@ -102,7 +106,7 @@ impl TriangleMesh {
         positive("radius", radius)?;
         let (min, max) = self.bounds();
         let middle = min + 0.5 * (max - min);
-        let reach = self.positions.iter().map(|p| (p - middle).length()).fold(0.0, f32::max);
+        let reach = self.positions.iter().map(|p| length(p - middle)).fold(0.0, f32::max);
         let scale = radius / positive("the mesh's extent", reach)?;
         let positions = self.positions.iter().map(|p| center + (p - middle) * scale).collect();
         Self::new(positions, self.normals.clone(), self.triangles.clone())
@@ -123,6 +127,19 @@ mod tests {
         let (positions, triangles) = corner();
         let mesh = TriangleMesh::new(positions, vec![], triangles).unwrap();
         assert_eq!(mesh.normals(), [Vec3::Z; 3]);
+    }
+
+    #[test]
+    fn normals_do_not_depend_on_the_unit_of_length() {
+        let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(-0.3, 0.2, 0.7)];
+        let triangles = vec![[0, 1, 2], [0, 2, 3], [3, 1, 0]];
+        let normals = |scale: f32| {
+            let positions = positions.iter().map(|&p| p * scale).collect();
+            TriangleMesh::new(positions, vec![], triangles.clone()).unwrap().normals().to_vec()
+        };
+        for exponent in [-100, -70, 70, 120] {
+            assert_eq!(normals(2.0f32.powi(exponent)), normals(1.0), "2^{exponent}");
+        }
     }
 
     #[test]
@@ -159,6 +176,12 @@ mod tests {
         let mesh = TriangleMesh::new(positions, vec![], triangles).unwrap().fitted(Vec3::ONE, 2.0).unwrap();
         let far = mesh.positions().iter().map(|p| (p - Vec3::ONE).length()).fold(0.0, f32::max);
         assert!((far - 2.0).abs() < 1e-6);
+        for size in [1e-30f32, 1e30] {
+            let (positions, triangles) = corner();
+            let positions = positions.into_iter().map(|p| p * size).collect();
+            let mesh = TriangleMesh::new(positions, vec![], triangles).unwrap().fitted(Vec3::ONE, 2.0).unwrap();
+            assert!((mesh.positions()[1] - mesh.positions()[2]).length() > 1.0, "{size}");
+        }
         let point = TriangleMesh::new(vec![Vec3::ONE; 3], vec![], vec![[0, 1, 2]]).unwrap();
         assert!(point.fitted(Vec3::ZERO, 1.0).is_err());
         assert!(mesh.fitted(Vec3::NAN, 1.0).is_err() && mesh.fitted(Vec3::ONE, f32::INFINITY).is_err());

@@ -2,8 +2,8 @@
 
 use glam::{Mat4, Vec3, Vec4};
 
-use crate::error::{GeometryError, positive};
-use crate::{Ray, normalized};
+use crate::error::{GeometryError, finite, positive};
+use crate::{Ray, length, normalized};
 
 /// A pinhole camera in cell space, looking from `eye` along its forward axis, with square pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,9 +25,9 @@ impl Pinhole {
     /// # Errors
     /// `eye` and `target` must be finite and distinct, `fov_y` in 0 … π, the sizes at least 1.
     pub fn look_at(eye: Vec3, target: Vec3, fov_y: f32, width: u32, height: u32) -> Result<Self, GeometryError> {
-        let distance = (target - eye).length();
-        let forward = normalized(target - eye)
-            .ok_or(GeometryError::NotPositive { what: "distance from eye to target", value: distance })?;
+        let apart = target - eye;
+        let forward = normalized(apart)
+            .ok_or(GeometryError::NotPositive { what: "distance from eye to target", value: length(apart) })?;
         Self::looking(eye, forward, Vec3::Y, fov_y, width, height)
     }
 
@@ -44,10 +44,14 @@ impl Pinhole {
         width: u32,
         height: u32,
     ) -> Result<Self, GeometryError> {
-        let length = forward.length();
+        for value in eye.to_array() {
+            finite("eye", value)?;
+        }
+        let long = length(forward);
         let forward = normalized(forward)
-            .ok_or(GeometryError::NotPositive { what: "length of the view direction", value: length })?;
-        let right = normalized(forward.cross(up)).unwrap_or(Vec3::Z * -forward.y.signum());
+            .ok_or(GeometryError::NotPositive { what: "length of the view direction", value: long })?;
+        let right =
+            normalized(up).and_then(|up| normalized(forward.cross(up))).unwrap_or(Vec3::Z * -forward.y.signum());
         let tan_half_y = positive("tangent of half the field of view", libm::tanf(0.5 * fov_y))?;
         positive("what the field of view leaves of a half circle", core::f32::consts::PI - fov_y)?;
         if width == 0 || height == 0 {
@@ -112,7 +116,7 @@ impl Pinhole {
 #[must_use]
 pub fn near_plane(eye: Vec3, boxes: impl IntoIterator<Item = (Vec3, Vec3)>) -> f32 {
     let (min, max) = boxes.into_iter().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();
-    let reach = (0.5 * (min + max) - eye).length() + 0.5 * (max - min).length();
+    let reach = length(0.5 * (min + max) - eye) + 0.5 * length(max - min);
     (1e-3 * reach).max(f32::MIN_POSITIVE)
 }
 
@@ -130,6 +134,7 @@ mod tests {
         assert!(Pinhole::look_at(Vec3::ZERO, Vec3::Y, 1.0, 4, 4).is_ok());
         assert!(Pinhole::look_at(Vec3::ZERO, Vec3::NAN, 1.0, 4, 4).is_err());
         assert!(Pinhole::look_at(Vec3::NAN, Vec3::ONE, 1.0, 4, 4).is_err());
+        assert!(Pinhole::looking(Vec3::NAN, Vec3::Z, Vec3::Y, 1.0, 4, 4).is_err());
     }
 
     #[test]
@@ -138,6 +143,26 @@ mod tests {
             let camera = Pinhole::look_at(Vec3::ZERO, target, 1.0, 4, 4).unwrap();
             assert!(camera.ray(2, 0).direction.x > 0.0);
             assert_eq!(camera.ray(2, 0).direction.y, target.y);
+        }
+    }
+
+    #[test]
+    fn up_may_have_any_length() {
+        let looking = |up| Pinhole::looking(Vec3::ZERO, Vec3::new(1.0, 2.0, -3.0), up, 1.0, 4, 4).unwrap();
+        let up = Vec3::new(0.6, 0.8, 0.0);
+        for exponent in [-120, -100, 100, 127] {
+            assert_eq!(looking(up * 2.0f32.powi(exponent)), looking(up), "2^{exponent}");
+        }
+    }
+
+    #[test]
+    fn the_near_plane_does_not_depend_on_the_unit_of_length() {
+        let near = |scale: f32| {
+            near_plane(Vec3::new(3.0, 1.0, 2.0) * scale, [(Vec3::NEG_ONE * scale, Vec3::new(1.0, 2.0, 1.0) * scale)])
+        };
+        for exponent in [-100, -70, 70, 120] {
+            let scale = 2.0f32.powi(exponent);
+            assert_eq!(near(scale), near(1.0) * scale, "2^{exponent}");
         }
     }
 

@@ -1,8 +1,9 @@
 //! Where a mesh stands in the cell.
 
-use glam::{Mat4, Quat, Vec3};
+use glam::{Mat4, Quat, Vec3, Vec4};
 
 use crate::error::{GeometryError, finite, positive};
+use crate::scale::to_one;
 
 /// A similarity from a mesh's own space to cell space: scaled alike along all axes, turned, then moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +23,11 @@ impl Placement {
     /// All must be finite, the scale greater than 0 and the rotation not zero.
     pub fn new(scale: f32, rotation: Quat, translation: Vec3) -> Result<Self, GeometryError> {
         positive("scale", scale)?;
+        for value in rotation.to_array() {
+            finite("rotation", value)?;
+        }
+        // A power of two keeps the squares of any rotation in range.
+        let rotation = rotation * to_one(Vec4::from(rotation).abs().max_element());
         positive("length of the rotation", rotation.length())?;
         for value in translation.to_array() {
             finite("translation", value)?;
@@ -88,6 +94,15 @@ mod tests {
         let (min, max) = placement.bounds((Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0)));
         assert!((min - Vec3::new(0.0, 1.0, -2.0)).length() < 1e-5, "{min}");
         assert!((max - Vec3::new(6.0, 5.0, 0.0)).length() < 1e-5, "{max}");
+    }
+
+    #[test]
+    fn rotations_may_have_any_length() {
+        let turn = Quat::from_xyzw(0.1, -0.2, 0.3, 0.9);
+        let placement = |turn| Placement::new(1.0, turn, Vec3::ZERO).unwrap();
+        for exponent in [-100, 100] {
+            assert_eq!(placement(turn * 2.0f32.powi(exponent)), placement(turn), "2^{exponent}");
+        }
     }
 
     #[test]

@@ -172,7 +172,8 @@ impl Slab {
 
     /// The four cameras around a ray with their image positions and bilinear weights (Eqs. 5 and 6; Fig. 8).
     ///
-    /// Indices outside the slab are clamped to its edge; ask [`Self::contains`] first where that matters. On an axis with
+    /// Indices outside the slab are clamped to its edge, one that is no number counts as 0, before anything becomes an integer:
+    /// ask [`Self::contains`] first where that matters. On an axis with
     /// a single camera both neighbours are that camera.
     #[inline]
     #[must_use]
@@ -185,7 +186,8 @@ impl Slab {
     #[must_use]
     pub fn taps_with(&self, coord: &SlabCoord, disparity: Vec2) -> [CameraTap; 4] {
         let last = |axes: &[SampledAxis; 2]| Vec2::new(axes[0].last_index(), axes[1].last_index());
-        let st = coord.st.clamp(Vec2::ZERO, last(&self.st));
+        // `max` takes its second operand where the first is no number.
+        let st = coord.st.max(Vec2::ZERO).min(last(&self.st));
         // The last camera is reached with weight 1 from the last but one, so that both always exist.
         let base = st.floor().min((last(&self.st) - 1.0).max(Vec2::ZERO));
         let fraction = st - base;
@@ -196,7 +198,7 @@ impl Slab {
             let camera = (base + offset).min(last(&self.st));
             CameraTap {
                 camera: [camera.x as u32, camera.y as u32],
-                uv: (uv + disparity * (st - camera)).clamp(Vec2::ZERO, uv_last),
+                uv: (uv + disparity * (st - camera)).max(Vec2::ZERO).min(uv_last),
                 weight: shares.x * shares.y,
             }
         })

@@ -209,8 +209,8 @@ pub(crate) fn interpolate([a, b, c]: [Vec3; 3], shares: Vec3) -> Vec3 {
 }
 
 /// The unit normal of a triangle's plane; +Y if it has no area.
-pub(crate) fn plane_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
-    lf_math::normalized((b - a).cross(c - a)).unwrap_or(Vec3::Y)
+pub(crate) fn plane_normal(corners: [Vec3; 3]) -> Vec3 {
+    lf_math::triangle_normal(corners).unwrap_or(Vec3::Y)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ mod assemble;
 #[path = "../../lf-format/tests/format/layout.rs"]
 mod layout;
 pub mod mitsuba;
+pub mod stability;
 pub mod vectors;
 
 use glam::Vec3;

@@ -85,11 +85,11 @@ impl Axis {
     pub(super) fn neighbours<S: Simd>(&self, simd: S, position: F<S>, slope: F<S>) -> [Neighbour<S>; 2] {
         let index = (position - self.positions.first()) / self.positions.step();
         let last = self.positions.last_index();
-        // What is not a number, since the origin is not finite, counts as the first camera.
         let st = index.max_precise(0.0).min(last);
         let base = st.floor().min((last - 1.0).max(0.0));
-        let fraction = st - base;
         let uv = (slope - self.slopes.first()) / self.slopes.step();
+        // Adds 0, or makes the shares no numbers where an index is not finite: such a ray has no answer.
+        let fraction = st - base + (index * 0.0 + uv * 0.0);
         let near = self.neighbour(simd, base, F::<S>::splat(simd, 1.0) - fraction, st, uv);
         let far = self.neighbour(simd, (base + 1.0).min(last), fraction, st, uv);
         [near, far]
