@@ -1,20 +1,17 @@
 //! Lookups per second on one core: slabs of the paper's set-up from BC1 blocks and from decoded texels, against an environment map.
 //!
-//! Rays are timed in parts that take less than a millisecond to a few, one contender after the other in each round. The fastest round of
-//! each part counts: what else the machine does then shows little.
+//! What counts is the time that the thread ran: what else the machine does shows less.
 
 use std::hint::black_box;
-use std::time::Instant;
 
+use cpu_time::ThreadTime;
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DVec3, Vec3};
 use lf_compress::{PackedLightField, bc1::Quality, format::TexelEncoding};
 use lf_ibr::{BlockField, CubeField, Environment, SlabField};
 use lf_math::{Cell, CubeMap, Image, LightFieldGeometry, PlanePlacement, Ray, SlabTexels, reflect};
 
 const EDGE: usize = 512;
-/// Rays of a part.
-const PART: usize = 4096;
-const ROUNDS: usize = 25;
 const TEXELS: usize = 32 * 32 * 128 * 128;
 
 fn hash(i: usize) -> u32 {
@@ -68,53 +65,34 @@ fn random(len: usize) -> Vec<Ray> {
     (0..len).map(|i| Ray { origin: vector(2 * i), direction: vector(2 * i + 1) }).collect()
 }
 
-/// Seconds in which an environment answers each part of the rays: the fastest of all rounds so far.
-struct Contender<'a> {
-    name: &'static str,
-    environment: &'a dyn Environment,
-    seconds: Vec<f64>,
-}
-
-impl<'a> Contender<'a> {
-    fn new(name: &'static str, environment: &'a dyn Environment) -> Self {
-        Self { name, environment, seconds: Vec::new() }
-    }
-
-    fn round(&mut self, rays: &[Ray]) {
-        self.seconds.resize(rays.len() / PART, f64::INFINITY);
-        let mut answers = vec![None; PART];
-        for (rays, fastest) in rays.chunks_exact(PART).zip(&mut self.seconds) {
-            let start = Instant::now();
-            self.environment.look_up_all(black_box(rays), black_box(&mut answers));
-            *fastest = fastest.min(start.elapsed().as_secs_f64());
-            assert!(answers.iter().all(Option::is_some), "every ray has an answer");
-        }
-    }
-}
-
-fn main() {
-    // As Criterion has it: only try whether it runs.
-    let rounds = if std::env::args().any(|argument| argument == "--test") { 1 } else { ROUNDS };
+fn bench(criterion: &mut Criterion) {
     let packed = packed();
     let (blocks, cube) = (BlockField::new(&packed).expect("a field"), cube());
     let texels = packed.decode(1 << 30).expect("texels");
     let slabs = SlabField::new(packed.geometry().clone(), texels).expect("a field");
+    let contenders: [(&str, &dyn Environment); 3] =
+        [("slabs, BC1", &blocks), ("slabs, RGBA8", &slabs), ("environment map", &cube)];
     let coherent = sphere();
     let orders = [("shuffled", shuffled(coherent.clone())), ("random", random(coherent.len())), ("coherent", coherent)];
     for (order, rays) in &orders {
-        let mut contenders = [
-            Contender::new("slabs BC1", &blocks),
-            Contender::new("slabs RGBA8", &slabs),
-            Contender::new("environment map 512", &cube),
-        ];
-        (0..rounds).for_each(|_| contenders.iter_mut().for_each(|contender| contender.round(rays)));
-        for Contender { name, seconds, .. } in &contenders {
-            let (rays, seconds) = ((seconds.len() * PART) as f64, seconds.iter().sum::<f64>());
-            println!(
-                "{order:8} {name:19} {:6.2} million rays a second, {:6.1} ns a ray",
-                1e-6 * rays / seconds,
-                1e9 * seconds / rays
-            );
+        let mut group = criterion.benchmark_group(*order);
+        group.throughput(Throughput::Elements(rays.len() as u64)).sample_size(20);
+        for (name, environment) in contenders {
+            let mut answers = vec![None; rays.len()];
+            environment.look_up_all(rays, &mut answers);
+            assert!(answers.iter().all(Option::is_some), "every ray has an answer");
+            group.bench_function(name, |bencher| {
+                bencher.iter_custom(|times| {
+                    let start = ThreadTime::now();
+                    for _ in 0..times {
+                        environment.look_up_all(black_box(rays), black_box(&mut answers));
+                    }
+                    start.elapsed()
+                });
+            });
         }
     }
 }
+
+criterion_group!(benches, bench);
+criterion_main!(benches);
