@@ -16,13 +16,11 @@ use crate::sources::{EYE_DISTANCE, Source};
 
 /// Vertical field of view, radians: a reflector that fills the cell fills nine tenths of the picture.
 pub(crate) const FOV_Y: f32 = 0.67;
-/// Frames drawn before the clock counts, and frames counted, for each eye.
-const WARM_UP: usize = 1;
+/// Frames that are counted of each eye, after one that is not; of the slower reference fewer.
 const REPEATS: usize = 5;
-/// Frames of the slower reference that are counted, after one that is not; if that took longer than so many seconds, it is
-/// the only one.
 const REFERENCE_REPEATS: usize = 2;
-const SLOW_REFERENCE: f64 = 1.0;
+/// If the first frame takes longer than so many seconds, it is the only one.
+const SLOW: f64 = 1.0;
 /// How far above the cell's centre the eyes look down from, radians.
 const ELEVATION: f32 = 0.26;
 
@@ -97,7 +95,7 @@ impl Stage<'_> {
                 || frame = Some(reference::render(&self.source.tracer, &self.source.cell, &mirror, camera));
             let first = measure(0, 1, &mut render);
             // What takes long is not disturbed by a cold start.
-            let timing = if first.median() > SLOW_REFERENCE { first } else { measure(0, REFERENCE_REPEATS, render) };
+            let timing = if first.median() > SLOW { first } else { measure(0, REFERENCE_REPEATS, render) };
             references.extend(frame);
             done();
             timing
@@ -157,14 +155,17 @@ pub(crate) fn compared(
     errors.collect()
 }
 
-/// Draws a frame several times; the timing and the picture.
+/// Draws a frame several times; the timing and the picture. The first does not count, unless it takes so long that a cold start does not
+/// disturb it: then it is the only one.
 pub(crate) fn timed(mut method: impl Method, repeats: usize) -> Result<(Timing, Image<[u8; 4]>)> {
     let mut outcome = Ok(());
-    let timing = measure(WARM_UP, repeats, || {
+    let mut draw = || {
         if let Err(error) = method.draw() {
             outcome = Err(error);
         }
-    });
+    };
+    let first = measure(0, 1, &mut draw);
+    let timing = if first.median() > SLOW { first } else { measure(0, repeats, draw) };
     outcome?;
     Ok((timing, method.picture()?))
 }

@@ -58,12 +58,24 @@ fn measure(args: &ReportArgs) -> Result<Baseline> {
     let mut figures = vec![];
     for scene in &spec.scenes {
         figures.extend(in_scene(args, &spec, scene, gpu.as_ref(), &mut report)?);
+        // A long run that is stopped leaves the scenes that were done.
+        save(args, &finished(&report, &spec, start), &figures)?;
     }
+    let report = finished(&report, &spec, start);
+    let lines = [report.to_markdown(), report.notes.join("\n\n"), report.headlines().join("\n")];
+    print(&format!("{}\n\nopen {}", lines.join("\n"), args.out.join("report.html").display()))?;
+    Ok(Baseline::from_json(&report.to_json()?)?)
+}
+
+/// The report with what follows from its results.
+fn finished(report: &Report, spec: &Spec, start: Instant) -> Report {
+    let mut report = report.clone();
     let own = tables::tables(&report);
     report.tables.splice(0..0, own);
-    report.facts.push(("Frames timed".to_owned(), format!("{} of each eye, after one that is not", spec.repeats)));
+    let timed = format!("{} of each eye, after one that is not; of what takes more than a second, one", spec.repeats);
+    report.facts.push(("Frames timed".to_owned(), timed));
     report.facts.push(("Took".to_owned(), format!("{:.0} s", start.elapsed().as_secs_f64())));
-    save(args, &report, &figures)
+    report
 }
 
 /// What is to be measured: the file or preset, with what the command line says otherwise.
@@ -139,12 +151,11 @@ fn conditions(shot: &Shot, spec: &Spec, report: &Report) -> String {
     )
 }
 
-/// Writes everything into the folder, and the tables to standard output.
-fn save(args: &ReportArgs, report: &Report, figures: &[Figure]) -> Result<Baseline> {
+/// Writes everything into the folder.
+fn save(args: &ReportArgs, report: &Report, figures: &[Figure]) -> Result<()> {
     let file = |name: &str| args.out.join(name);
-    let json = report.to_json()?;
     let markdown = format!("{}\n{}\n", report.to_markdown(), report.notes.join("\n\n"));
-    write(&file("report.json"), json.as_bytes())?;
+    write(&file("report.json"), report.to_json()?.as_bytes())?;
     write(&file("report.csv"), report.to_csv()?.as_bytes())?;
     write(&file("report.md"), markdown.as_bytes())?;
     write(&file("report.html"), report.to_html(figures)?.as_bytes())?;
@@ -157,8 +168,7 @@ fn save(args: &ReportArgs, report: &Report, figures: &[Figure]) -> Result<Baseli
             }
         }
     }
-    print(&format!("{markdown}\n{}\nopen {}", report.headlines().join("\n"), file("report.html").display()))?;
-    Ok(Baseline::from_json(&json)?)
+    Ok(())
 }
 
 /// Letters and digits of a name; what else it has becomes a dash.
