@@ -131,7 +131,8 @@ pub(crate) struct RenderArgs {
     /// The scene for `--background scene`: an embedded one or a glTF file, the one that the light field was captured in
     #[arg(long, value_name = "NAME|FILE", conflicts_with = "against")]
     pub(crate) scene: Option<String>,
-    /// How long edges of the scene's triangles may be, in edge lengths of the cell: the light is right at their ends
+    /// How long edges of the scene's triangles may be, in edge lengths of the cell: the light is right at their ends. A
+    /// scene is cut into two million triangles at most
     #[arg(long, value_name = "LENGTH", default_value_t = 0.1, value_parser = length, requires = "scene")]
     pub(crate) scene_edge: f32,
     /// What is painted

@@ -3,7 +3,7 @@
 //! A [`Scene`] is triangles with textured materials, lights and an environment, made in code ([`EMBEDDED`]) or read from glTF
 //! ([`import_gltf`]). A [`Tracer`] answers one ray at a time. From it come the texels of slabs ([`TexelSampler`], [`capture_slabs`]), cube
 //! maps ([`trace_cube`], [`capture_cube`]) and the reference pictures ([`mod@reference`]).
-//! [`rasterised`] makes triangles with light at their corners of it, [`reflectors`] holds the objects to look at.
+//! [`rasterised()`] makes triangles with light at their corners of it, [`reflectors`] holds the objects to look at.
 //!
 //! # The tracer
 //!

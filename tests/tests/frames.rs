@@ -7,7 +7,7 @@ use lf_gpu::{Frame, Gpu, MirrorMesh, NormalMapTexture, SceneMesh, SlabRenderer, 
 use lf_ibr::{Behind, SlabField, Texel, draw_frame};
 use lf_math::{
     Image, LightFieldGeometry, LitMesh, NormalMap, Pinhole, Placement, Reflectance, SampledAxis, Slab, SlabTexels,
-    TriangleMesh, View, linear_from_srgb,
+    TriangleMesh, View, linear_from_srgb, srgb8_from_linear,
 };
 use lf_scene::{Capture, Tracer, rasterised, reference, reflectors};
 use lf_tests::{capture, gpu, museum, packed};
@@ -301,6 +301,23 @@ fn frames_with_the_scenes_triangles_agree() {
             assert!(found.p99 <= 1 && found.p999 <= 3, "{label}");
             assert!(expected.texels().iter().all(|texel| texel[3] == 255), "the room is closed");
         }
+    }
+}
+
+/// Away from the edges of patterns and shadows the light is the ray tracer's.
+#[test]
+fn the_scenes_triangles_look_as_they_are_traced() {
+    let (tracer, geometry) = (museum(), museum_triangles());
+    let field = twin(&packed(&focused()));
+    for camera in &eyes_in_the_room() {
+        let drawn = expected(&field, &[], Behind::Scene(&geometry), View::Color, camera);
+        let traced = reference::background(&tracer, &lf_scene::museum::cell(), camera).map(srgb8_from_linear);
+        let pairs = drawn.texels().iter().zip(traced.texels());
+        let mut apart: Vec<u8> = pairs.map(|(a, b)| (0..3).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0)).collect();
+        apart.sort_unstable();
+        let [half, most] = [0.5, 0.7].map(|share| apart[(apart.len() as f64 * share) as usize]);
+        println!("half of the pixels are within {half}/255 of the traced ones, 70 % within {most}/255");
+        assert!(half <= 1 && most <= 2, "{half} {most}");
     }
 }
 
