@@ -126,8 +126,15 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = 4.0, value_parser = repeats, requires = "normal_map")]
     pub(crate) normal_repeats: f32,
     /// What is behind the reflectors
-    #[arg(long, value_enum, default_value_t = Behind::None, conflicts_with = "against")]
-    pub(crate) background: Behind,
+    #[arg(long, value_enum, default_value_t = BackgroundArg::None, conflicts_with = "against", requires_if("scene", "scene"))]
+    pub(crate) background: BackgroundArg,
+    /// The scene for `--background scene`: an embedded one or a glTF file, the one that the light field was captured in
+    #[arg(long, value_name = "NAME|FILE", conflicts_with = "against")]
+    pub(crate) scene: Option<String>,
+    /// How long edges of the scene's triangles may be, in edge lengths of the cell: the light is right at their ends. A
+    /// scene is cut into two million triangles at most
+    #[arg(long, value_name = "LENGTH", default_value_t = 0.1, value_parser = length, requires = "scene")]
+    pub(crate) scene_edge: f32,
     /// What is painted
     #[arg(long, value_enum, default_value_t = ViewArg::Color, conflicts_with = "against")]
     pub(crate) view: ViewArg,
@@ -150,11 +157,13 @@ pub(crate) struct RenderArgs {
 
 /// What is behind the reflectors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Behind {
+pub(crate) enum BackgroundArg {
     /// Grey
     None,
     /// The scene, from the same slabs; they hold all of it if the eye is inside the cell
     Slabs,
+    /// The triangles of `--scene`, which also hide the reflectors; from any eye. Patterns and shadows finer than `--scene-edge` blur
+    Scene,
 }
 
 /// What a frame paints where it asks the slabs.
@@ -338,6 +347,12 @@ fn lambda(text: &str) -> Result<f32, String> {
 fn share(text: &str) -> Result<f32, String> {
     let parsed = text.trim().parse().ok().filter(|share| (0.0..=1.0).contains(share));
     parsed.ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}
+
+/// A length.
+fn length(text: &str) -> Result<f32, String> {
+    let parsed = text.trim().parse().ok().filter(|length| (1e-6..=1e6).contains(length));
+    parsed.ok_or_else(|| "expected a number from 1e-6 to 1e6".to_owned())
 }
 
 /// How often something repeats.

@@ -7,13 +7,13 @@ use glam::Vec3;
 use image::ImageReader;
 use lf_compress::PackedLightField;
 use lf_format::TexelEncoding;
-use lf_gpu::{Frame, Gpu, MirrorMesh, NormalMapTexture, SlabRenderer, SlabTexture, Target};
-use lf_ibr::{SlabField, Texel, draw_frame};
-use lf_math::{Cell, Image, NormalMap, Pinhole, Placement, Reflectance, TriangleMesh, View, image_error};
+use lf_gpu::{Frame, Gpu, MirrorMesh, NormalMapTexture, SceneMesh, SlabRenderer, SlabTexture, Target};
+use lf_ibr::{Behind, SlabField, Texel, draw_frame};
+use lf_math::{Cell, Image, LitMesh, NormalMap, Pinhole, Placement, Reflectance, TriangleMesh, View, image_error};
 use lf_scene::reference::{self, Mirror};
-use lf_scene::{Scene, Tracer};
+use lf_scene::{Scene, Tracer, rasterised};
 
-use crate::args::{Behind, ReflectorArg, RenderArgs, ViewArg};
+use crate::args::{BackgroundArg, ReflectorArg, RenderArgs, ViewArg};
 use crate::device::{open_gpu, or_cpu};
 use crate::frames::FOV_Y;
 use crate::input::{MAX_DECODED_BYTES, load};
@@ -33,7 +33,7 @@ struct Request<'a> {
     placed: &'a [Placed],
     reflectance: Reflectance,
     normal_map: Option<&'a NormalMap>,
-    background: bool,
+    behind: Behind<'a>,
     view: View,
     camera: &'a Pinhole,
 }
@@ -47,12 +47,17 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
     let camera = Pinhole::look_at(args.eye.0 * edge, Vec3::ZERO, FOV_Y, args.size, args.size)?;
     let normal_map =
         args.normal_map.as_ref().map(|path| read_normal_map(path, args.normal_repeats / edge)).transpose()?;
+    let scene = scene_behind(args, &cell)?;
     let request = Request {
         field: &field,
         placed: &placed,
         reflectance: Reflectance::new(args.tint.0, args.fresnel)?,
         normal_map: normal_map.as_ref(),
-        background: args.background == Behind::Slabs,
+        behind: match (&scene, args.background) {
+            (Some(scene), _) => Behind::Scene(scene),
+            (None, BackgroundArg::Slabs) => Behind::Environment,
+            (None, _) => Behind::Nothing,
+        },
         view: args.view.view(),
         camera: &camera,
     };
@@ -78,6 +83,22 @@ pub(crate) fn run(args: &RenderArgs) -> Result<()> {
 
 fn place(arg: &ReflectorArg, cell: &Cell) -> Result<Placed> {
     placed(arg, cell).map(|(mesh, placement)| Placed { mesh, placement })
+}
+
+/// The scene's triangles with their light, if they are asked for.
+fn scene_behind(args: &RenderArgs, cell: &Cell) -> Result<Option<LitMesh>> {
+    let Some(scene) = args.scene.as_ref().filter(|_| args.background == BackgroundArg::Scene) else {
+        if args.scene.is_some() {
+            bail!("--scene is for --background scene");
+        }
+        return Ok(None);
+    };
+    let tracer = Tracer::new(Loaded::open(scene, &args.light)?.scene).with_quality(args.light.quality());
+    let edge = args.scene_edge * 2.0 * cell.half_extent().min_element();
+    let mesh = rasterised(&tracer, cell, edge).context("--scene-edge")?;
+    let [triangles, corners] = [mesh.triangles().len(), mesh.positions().len()];
+    eprintln!("scene    {scene}: {triangles} triangles with edges of at most {edge:.3} m, {corners} corners traced");
+    Ok(Some(mesh))
 }
 
 /// A picture of normals.
@@ -137,8 +158,14 @@ fn draw_on_gpu(gpu: &Gpu, request: &Request<'_>) -> Result<Image<[u8; 4]>> {
         normal_map: normal_map.as_ref(),
     };
     let reflectors: Vec<_> = meshes.iter().zip(request.placed).map(reflector).collect();
-    let Request { camera, background, view, .. } = *request;
-    let frame = Frame { camera, reflectors: &reflectors, background, view };
+    let scene = if let Behind::Scene(scene) = request.behind { Some(SceneMesh::new(gpu, scene)?) } else { None };
+    let behind = match (&scene, request.behind) {
+        (Some(scene), _) => lf_gpu::Behind::Scene(scene),
+        (None, Behind::Environment) => lf_gpu::Behind::Slabs,
+        (None, _) => lf_gpu::Behind::Nothing,
+    };
+    let Request { camera, view, .. } = *request;
+    let frame = Frame { camera, reflectors: &reflectors, behind, view };
     SlabRenderer::new(gpu, &texture)?.draw(&target, &frame)?;
     Ok(target.read(gpu)?)
 }
@@ -164,7 +191,7 @@ fn draw_field<T: Texel>(field: &SlabField<T>, request: &Request<'_>) -> Result<I
             normal_map: request.normal_map,
         })
         .collect();
-    Ok(draw_frame(&reflectors, request.background, &field.viewed(request.view), request.camera)?)
+    Ok(draw_frame(&reflectors, request.behind, &field.viewed(request.view), request.camera)?)
 }
 
 impl ViewArg {

@@ -127,6 +127,40 @@ fn frames_are_drawn_as_asked() {
     assert!(!run(&[&two[..], &["--against", "museum"]].concat()).status.success());
 }
 
+/// Its triangles are there where nothing else would be, and hide a reflector behind them.
+#[test]
+fn a_scene_stands_around_its_reflectors() {
+    let folder = TempDir::new().unwrap();
+    let file = small_file(folder.path());
+    let picture = folder.path().join("scene.png").to_string_lossy().into_owned();
+    let run = |rest: &[&str]| {
+        let arguments = ["render", &file, "--cpu", "--size", "64", "--out", &picture, "--reflector", "sphere"];
+        lfslab(&[&arguments, rest].concat())
+    };
+    let scene = ["--background", "scene", "--scene", "museum", "--scene-edge", "0.5"];
+    // A column stands between this eye and the sphere.
+    for (eye, tint) in [("2.956,0,1.225", "1,0,0"), ("2.956,0,1.225", "0,1,0")] {
+        let output = run(&[&scene[..], &["--eye", eye, "--tint", tint]].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(text(&output.stderr).contains("corners traced"));
+        let drawn = image::open(&picture).unwrap().to_rgb8();
+        assert!(drawn.pixels().all(|pixel| pixel.0 != [40, 40, 44]), "the room is closed");
+        let [r, g, b] = drawn.get_pixel(32, 32).0;
+        assert!(r > 2 * g && g > 0 && b > 0, "the red column hides the sphere: {r} {g} {b}");
+    }
+    for (wrong, why) in [
+        (&["--background", "scene"][..], "--scene <NAME|FILE>"),
+        (&["--scene", "museum"], "--background scene"),
+        (&["--background", "slabs", "--scene", "museum"], "--background scene"),
+        (&["--background", "scene", "--scene", "museum", "--scene-edge", "0.001"], "longer edges"),
+        (&["--background", "scene", "--scene", "nowhere"], "nowhere"),
+        (&["--background", "scene", "--scene", "museum", "--against", "museum"], "--against"),
+    ] {
+        let output = run(wrong);
+        assert!(!output.status.success() && text(&output.stderr).contains(why), "{wrong:?}: {}", text(&output.stderr));
+    }
+}
+
 /// The error against the scene that was captured is the smaller one; with noise it is said how much.
 #[test]
 fn a_picture_is_held_against_a_scene() {

@@ -1,14 +1,19 @@
 //! Whole frames from slabs: any number of reflectors that hide each other, and what is behind them.
 //!
+//! What is behind comes from the same slabs (§6 of the paper), or is the scene's own triangles (§7), drawn with the same depth test, so that
+//! they and the reflectors hide each other.
+//!
 //! One pass (Figs. 6 and 8 of the paper) or the paper's own two (§7). Each combination of what a reflector, a background and a
 //! light field need is a pipeline of its own, compiled when a frame first asks for it. CPU twin: lf-ibr/src/scene.rs. Reflectors do
 //! not show each other.
 
+use glam::Vec3;
 use lf_math::{Pinhole, Placement, Reflectance, View, near_plane};
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{MirrorMesh, bilinear_sampler, bind_group, buffer, clear_color, clear_depth, pipeline};
+use crate::mesh::{MirrorMesh, SceneMesh};
+use crate::pass::{bilinear_sampler, bind_group, buffer, clear_color, clear_depth, pipeline};
 use crate::relief::NormalMapTexture;
 use crate::shader::{Finish, Part, Relief, Shader};
 use crate::slab_texture::SlabTexture;
@@ -29,6 +34,18 @@ pub struct Reflector<'a> {
     pub normal_map: Option<&'a NormalMapTexture>,
 }
 
+/// What is behind the reflectors.
+#[derive(Clone, Copy)]
+pub enum Behind<'a> {
+    /// Nothing: transparent black.
+    Nothing,
+    /// What the slabs hold along the view rays. They hold every one if the eye is inside the cell.
+    Slabs,
+    /// The scene's triangles, behind the reflectors and in front of them, seen from anywhere; they show their light in every view. Nothing
+    /// is where they are not.
+    Scene(&'a SceneMesh),
+}
+
 /// What to draw.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
@@ -36,8 +53,8 @@ pub struct Frame<'a> {
     pub camera: &'a Pinhole,
     /// What mirrors.
     pub reflectors: &'a [Reflector<'a>],
-    /// Whether the slabs also show what is behind the reflectors. They hold every view ray if the eye is inside the cell.
-    pub background: bool,
+    /// What is behind the reflectors.
+    pub behind: Behind<'a>,
     /// What is painted.
     pub view: View,
 }
@@ -75,7 +92,11 @@ impl<'a> SlabRenderer<'a> {
     pub fn draw(&mut self, target: &Target, frame: &Frame<'_>) -> Result<(), GpuError> {
         let mirrors: Vec<Part> =
             frame.reflectors.iter().map(|mirror| Part::Mirror(mirror.finish(frame.view), mirror.relief())).collect();
-        let behind = frame.background.then_some(Part::Background(frame.view));
+        let behind = match frame.behind {
+            Behind::Nothing => None,
+            Behind::Slabs => Some(Part::Background(frame.view)),
+            Behind::Scene(_) => Some(Part::Scene),
+        };
         let colors = [Some(clear_color(&target.color))];
         self.compile(mirrors.iter().copied().chain(behind))?;
         self.submit(|renderer, encoder| {
@@ -87,15 +108,18 @@ impl<'a> SlabRenderer<'a> {
     /// matter.
     ///
     /// # Errors
-    /// If the device refuses a pipeline or a command, or if a reflector is not a perfect mirror: the buffer does not hold how
-    /// much it reflects.
+    /// If the device refuses a pipeline or a command, or if a reflector is not a perfect mirror, or the scene's triangles are behind: the
+    /// buffer holds neither how much is reflected nor light.
     pub fn ask(&mut self, stuv: &StuvBuffer, frame: &Frame<'_>) -> Result<(), GpuError> {
         if frame.reflectors.iter().any(|mirror| mirror.reflectance != Reflectance::MIRROR) {
-            let why = "only perfect mirrors are drawn so".to_owned();
-            return Err(GpuError::Refused { what: "two passes", why });
+            return Err(two_passes("only perfect mirrors are drawn so"));
         }
+        let behind = match frame.behind {
+            Behind::Nothing => None,
+            Behind::Slabs => Some(Part::StuvBackground),
+            Behind::Scene(_) => return Err(two_passes("the scene's triangles are drawn in one pass")),
+        };
         let mirrors: Vec<Part> = frame.reflectors.iter().map(|mirror| Part::StuvMirror(mirror.relief())).collect();
-        let behind = frame.background.then_some(Part::StuvBackground);
         let colors = [Some(clear_color(&stuv.stuv)), Some(clear_color(&stuv.faces))];
         self.compile(mirrors.iter().copied().chain(behind))?;
         self.submit(|renderer, encoder| renderer.encode(encoder, frame, &colors, &stuv.depth, &mirrors, behind))
@@ -165,7 +189,11 @@ impl<'a> SlabRenderer<'a> {
             self.bind(&mut pass, part, &inputs);
             reflector.mesh.draw(&mut pass, number);
         }
-        if let Some(part) = behind {
+        let Some(part) = behind else { return };
+        if let Behind::Scene(mesh) = frame.behind {
+            self.bind(&mut pass, part, &[(0, buffers.frame.as_entire_binding())]);
+            mesh.draw(&mut pass);
+        } else {
             self.bind(&mut pass, part, &[(7, buffers.sight.as_entire_binding())]);
             pass.draw(0..3, 0..1);
         }
@@ -176,12 +204,26 @@ impl<'a> SlabRenderer<'a> {
         let Some((_, pipeline)) = self.pipelines.iter().find(|(compiled, _)| *compiled == part) else { return };
         let field = if part.fetches() {
             self.texture.bindings(&self.sampler)
-        } else {
+        } else if part.asks() {
             vec![(1, self.texture.uniform().as_entire_binding())]
+        } else {
+            vec![]
         };
         let bindings = bind_group(self.gpu, pipeline, field.into_iter().chain(inputs.iter().cloned()));
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &bindings, &[]);
+    }
+}
+
+/// Why there are no two passes.
+fn two_passes(why: &str) -> GpuError {
+    GpuError::Refused { what: "two passes", why: why.to_owned() }
+}
+
+impl Behind<'_> {
+    /// The box around the scene's triangles.
+    fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        if let Self::Scene(mesh) = self { Some(mesh.bounds()) } else { None }
     }
 }
 
@@ -214,7 +256,9 @@ impl FrameBuffers {
             instances.push(InstanceUniform::new(&Placement::IDENTITY, &Reflectance::MIRROR, 1.0));
         }
         let boxes = frame.reflectors.iter().map(|mirror| mirror.placement.bounds(mirror.mesh.bounds()));
-        let near = near_plane(frame.camera.eye(), boxes);
+        // The scene may be a thousand times as far as the reflectors.
+        let scene = frame.behind.bounds().filter(|_| frame.reflectors.is_empty());
+        let near = near_plane(frame.camera.eye(), boxes.chain(scene));
         Self {
             frame: uniform("frame", bytemuck::bytes_of(&FrameUniform::new(frame.camera, near))),
             sight: uniform("sight", bytemuck::bytes_of(&SightUniform::new(frame.camera))),

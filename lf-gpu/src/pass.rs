@@ -1,25 +1,17 @@
 //! A pass that draws one mirror, and what all passes are made of.
 
 use glam::Vec3;
-use lf_math::{Pinhole, Placement, Reflectance, TriangleMesh, near_plane};
+use lf_math::{Pinhole, Placement, Reflectance, near_plane};
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
+use crate::mesh::MirrorMesh;
 use crate::shader::{Finish, Part, Relief, Shader, shader_source};
 use crate::slab_texture::SlabTexture;
 use crate::storage::slice_bytes;
 use crate::stuv::StuvBuffer;
 use crate::target::Target;
 use crate::uniforms::{FrameUniform, InstanceUniform};
-
-/// A reflective mesh on the device.
-pub struct MirrorMesh {
-    vertices: wgpu::Buffer,
-    indices: wgpu::Buffer,
-    index_count: u32,
-    /// The mesh's bounding box, its own space.
-    bounds: (Vec3, Vec3),
-}
 
 /// A pipeline with the environment it reflects.
 pub struct ReflectionPass {
@@ -50,35 +42,6 @@ pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::Buffe
     });
     gpu.queue.write_buffer(&buffer, 0, contents);
     buffer
-}
-
-impl MirrorMesh {
-    /// Uploads a mesh: given in cell space, or placed there by each frame.
-    ///
-    /// # Errors
-    /// If the mesh is too large for the device.
-    pub fn new(gpu: &Gpu, mesh: &TriangleMesh) -> Result<Self, GpuError> {
-        let vertices: Vec<[Vec3; 2]> =
-            mesh.positions().iter().copied().zip(mesh.normals().iter().copied()).map(Into::into).collect();
-        gpu.checked("the mirror's buffers", || Self {
-            vertices: buffer(gpu, "vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-            indices: buffer(gpu, "indices", bytemuck::cast_slice(mesh.triangles()), wgpu::BufferUsages::INDEX),
-            index_count: 3 * mesh.triangles().len() as u32,
-            bounds: mesh.bounds(),
-        })
-    }
-
-    /// Its bounding box, in its own space.
-    pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
-        self.bounds
-    }
-
-    /// Draws it as the instance of a number.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instance: u32) {
-        pass.set_vertex_buffer(0, self.vertices.slice(..));
-        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.index_count, 0, instance..instance + 1);
-    }
 }
 
 impl ReflectionPass {
@@ -133,7 +96,7 @@ impl ReflectionPass {
     /// If the device refuses a command.
     pub fn draw(&self, gpu: &Gpu, target: &Target, mesh: &MirrorMesh, camera: &Pinhole) -> Result<(), GpuError> {
         gpu.checked("a frame", || {
-            let frame = FrameUniform::new(camera, near_plane(camera.eye(), [mesh.bounds]));
+            let frame = FrameUniform::new(camera, near_plane(camera.eye(), [mesh.bounds()]));
             gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             self.encode(&mut encoder, target, mesh);
@@ -200,7 +163,7 @@ pub(crate) fn pipeline(gpu: &Gpu, shader: Shader, part: Part) -> wgpu::RenderPip
             module: &module,
             entry_point: Some(vertex),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: if matches!(part, Part::Mirror(..) | Part::StuvMirror(_)) { &mesh } else { &[] },
+            buffers: if part.is_mesh() { &mesh } else { &[] },
         },
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: depth_test(part),
@@ -219,10 +182,10 @@ pub(crate) fn pipeline(gpu: &Gpu, shader: Shader, part: Part) -> wgpu::RenderPip
     })
 }
 
-/// Mirrors hide what is behind them; the background is infinitely far, at depth 0, where nothing was drawn.
+/// Meshes hide what is behind them; the background is infinitely far, at depth 0, where nothing was drawn.
 fn depth_test(part: Part) -> Option<wgpu::DepthStencilState> {
     let compare = match part {
-        Part::Mirror(..) | Part::StuvMirror(_) => wgpu::CompareFunction::Greater,
+        Part::Mirror(..) | Part::StuvMirror(_) | Part::Scene => wgpu::CompareFunction::Greater,
         Part::Background(_) | Part::StuvBackground => wgpu::CompareFunction::GreaterEqual,
         Part::Resolve(_) | Part::Probe => return None,
     };

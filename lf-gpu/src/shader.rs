@@ -41,11 +41,13 @@ pub(crate) enum Windows {
     Masked,
 }
 
-/// What is drawn. All but mirrors ask slabs.
+/// What is drawn. All but mirrors and the scene's triangles ask slabs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Part {
     Mirror(Finish, Relief),
     Background(View),
+    /// The scene's triangles, which ask nothing.
+    Scene,
     /// The first of two passes, for mirrors and for the background, and the second.
     StuvMirror(Relief),
     StuvBackground,
@@ -167,6 +169,7 @@ impl Part {
         match self {
             Self::Mirror(..) => ["mirror_vertex", "mirror_fragment"],
             Self::Background(_) => ["screen_vertex", "background_fragment"],
+            Self::Scene => ["scene_vertex", "scene_fragment"],
             Self::StuvMirror(_) => ["mirror_vertex", "stuv_fragment"],
             Self::StuvBackground => ["screen_vertex", "stuv_fragment"],
             Self::Resolve(_) => ["screen_vertex", "resolve_fragment"],
@@ -174,11 +177,22 @@ impl Part {
         }
     }
 
+    /// Whether triangles are drawn that were uploaded, each vertex with two vectors.
+    pub(crate) fn is_mesh(self) -> bool {
+        matches!(self, Self::Mirror(..) | Self::Scene | Self::StuvMirror(_))
+    }
+
+    /// Whether the light field is asked at all.
+    pub(crate) fn asks(self) -> bool {
+        self != Self::Scene
+    }
+
     /// Whether the light field's texels are asked for, not only its geometry.
     pub(crate) fn fetches(self) -> bool {
         !matches!(
             self,
-            Self::StuvMirror(_)
+            Self::Scene
+                | Self::StuvMirror(_)
                 | Self::StuvBackground
                 | Self::Mirror(Finish::Viewed(View::Stuv), _)
                 | Self::Background(View::Stuv)
@@ -192,18 +206,20 @@ impl Part {
     }
 
     fn source(self) -> String {
+        let frame = include_str!("shaders/frame.wgsl");
         let (mirror, screen) = (include_str!("shaders/mirror.wgsl"), include_str!("shaders/screen.wgsl"));
         let sight = include_str!("shaders/sight.wgsl");
         match self {
             Self::Mirror(finish, relief) => {
-                [mirror, relief.source(), &finish.source(), include_str!("shaders/reflect.wgsl")].concat()
+                [frame, mirror, relief.source(), &finish.source(), include_str!("shaders/reflect.wgsl")].concat()
             }
             Self::Background(view) => {
                 [screen, sight, view_source(view), include_str!("shaders/background.wgsl")].concat()
             }
+            Self::Scene => [frame, include_str!("shaders/scene.wgsl")].concat(),
             Self::StuvMirror(relief) => {
                 let stuv = include_str!("shaders/stuv.wgsl");
-                [mirror, relief.source(), stuv, include_str!("shaders/stuv_mirror.wgsl")].concat()
+                [frame, mirror, relief.source(), stuv, include_str!("shaders/stuv_mirror.wgsl")].concat()
             }
             Self::StuvBackground => {
                 let stuv = include_str!("shaders/stuv.wgsl");
@@ -220,6 +236,9 @@ impl Part {
 
 /// The whole shader of a part.
 pub(crate) fn shader_source(shader: Shader, part: Part) -> String {
+    if !part.asks() {
+        return [include_str!("shaders/encode.wgsl"), &part.source()].concat();
+    }
     [shader.source(), shader.color_source(part.needs_light()), part.source()].concat()
 }
 
@@ -246,7 +265,7 @@ pub(crate) mod tests {
     impl Part {
         /// Everything that can be drawn from slabs.
         pub(crate) fn all() -> Vec<Self> {
-            let mut all = vec![Self::StuvBackground, Self::Probe];
+            let mut all = vec![Self::StuvBackground, Self::Probe, Self::Scene];
             let finishes =
                 View::ALL.map(Finish::Viewed).into_iter().chain([Finish::Bare, Finish::Tint, Finish::Fresnel]);
             for relief in [Relief::Smooth, Relief::Mapped] {
@@ -321,6 +340,13 @@ pub(crate) mod tests {
         ] {
             assert!(!source.contains(absent), "{absent}");
         }
+    }
+
+    #[test]
+    fn the_scenes_triangles_ask_nothing() {
+        let mut found = names(PLAIN, Part::Scene);
+        found.sort();
+        assert_eq!(found, ["decoded", "encoded", "frame", "scene_fragment", "scene_vertex"]);
     }
 
     /// The other way round: what a scene needs is there, so that the test above looks for the right words.

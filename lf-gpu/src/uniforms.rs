@@ -9,7 +9,7 @@ use lf_math::{Pinhole, Placement, Reflectance, Slab};
 use crate::layers::Layers;
 use crate::windows::{NO_MASK, TablePlace, WindowTable};
 
-/// `Frame` of mirror.wgsl.
+/// `Frame` of frame.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct FrameUniform {

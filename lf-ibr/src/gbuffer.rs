@@ -1,10 +1,10 @@
-//! A software rasteriser for the reflector's position and normal.
+//! A software rasteriser for the reflector's position and normal, and for the light of a scene's triangles.
 //!
 //! Follows the rules of GPU rasterisation: vertices snapped to 1/256 pixel, pixels covered by their centre, ties on
 //! shared edges by the top-left rule, attributes interpolated with perspective, nearest surface kept.
 
 use glam::{Mat4, Vec3, Vec4};
-use lf_math::{Image, Pinhole, Ray, TriangleMesh, near_plane, normalized, reflect};
+use lf_math::{Image, LitMesh, Pinhole, Ray, TriangleMesh, near_plane, normalized, reflect};
 
 /// Subpixel steps of the snapped coordinates, as Vulkan requires at least 4 bits of and common GPUs have 8 bits of.
 const SUBPIXEL: f32 = 256.0;
@@ -36,14 +36,49 @@ impl Fragment {
 #[derive(Debug, Clone)]
 pub struct GBuffer {
     eye: Vec3,
-    fragments: Image<Option<Fragment>>,
+    target: Target<Fragment>,
+}
+
+/// The light of a scene's triangles as seen by a camera.
+pub(crate) struct LitBuffer(Target<Vec3>);
+
+/// What is interpolated over triangles.
+trait Attributes: Copy {
+    /// The share of the way from one to another.
+    fn towards(self, other: Self, share: f32) -> Self;
+
+    /// The mean by weights of a sum.
+    fn mean(corners: [Self; 3], weights: [f32; 3], sum: f32) -> Self;
 }
 
 /// A vertex in clip space with its attributes.
 #[derive(Clone, Copy)]
-struct ClipVertex {
+struct ClipVertex<A> {
     clip: Vec4,
-    fragment: Fragment,
+    attributes: A,
+}
+
+impl Attributes for Vec3 {
+    fn towards(self, other: Self, share: f32) -> Self {
+        self.lerp(other, share)
+    }
+
+    fn mean([p, q, r]: [Self; 3], [a, b, c]: [f32; 3], sum: f32) -> Self {
+        (p * a + q * b + r * c) / sum
+    }
+}
+
+impl Attributes for Fragment {
+    fn towards(self, other: Self, share: f32) -> Self {
+        let (position, normal) =
+            (self.position.towards(other.position, share), self.normal.towards(other.normal, share));
+        Self { position, normal, ..self }
+    }
+
+    fn mean(corners: [Self; 3], weights: [f32; 3], sum: f32) -> Self {
+        let mean = |of: fn(Self) -> Vec3| Vec3::mean(corners.map(of), weights, sum);
+        Self { position: mean(|corner| corner.position), normal: mean(|corner| corner.normal), mesh: corners[0].mesh }
+    }
 }
 
 impl GBuffer {
@@ -58,11 +93,13 @@ impl GBuffer {
     pub fn rasterize_all(meshes: &[TriangleMesh], camera: &Pinhole) -> Self {
         let near = near_plane(camera.eye(), meshes.iter().map(TriangleMesh::bounds));
         let clip_from_cell = camera.clip_from_cell(near);
-        let mut target = Target::new(camera.width(), camera.height());
+        let mut target = Target::new(camera);
         for (number, mesh) in (0..).zip(meshes) {
-            target.mesh(mesh, number, clip_from_cell);
+            let corners = mesh.positions().iter().zip(mesh.normals());
+            let fragments = corners.map(|(&position, &normal)| (position, Fragment { position, normal, mesh: number }));
+            target.mesh(fragments, mesh.triangles(), clip_from_cell);
         }
-        Self { eye: camera.eye(), fragments: target.fragments }
+        Self { eye: camera.eye(), target }
     }
 
     /// The eye that sees the fragments, cell space.
@@ -74,12 +111,32 @@ impl GBuffer {
     /// The fragment at each pixel, where the reflector is.
     #[must_use]
     pub fn fragments(&self) -> &Image<Option<Fragment>> {
-        &self.fragments
+        &self.target.fragments
+    }
+
+    /// One over the depth of a pixel's fragment, the pixels counted row by row; 0 where there is none.
+    pub(crate) fn inverse_depth(&self, pixel: usize) -> f32 {
+        self.target.inverse_depths[pixel]
+    }
+}
+
+impl LitBuffer {
+    /// Draws what lies beyond a near plane.
+    pub(crate) fn rasterize(mesh: &LitMesh, camera: &Pinhole, near: f32) -> Self {
+        let mut target = Target::new(camera);
+        let corners = mesh.positions().iter().copied().zip(mesh.light().iter().copied());
+        target.mesh(corners, mesh.triangles(), camera.clip_from_cell(near));
+        Self(target)
+    }
+
+    /// The light at a pixel, if it comes from in front of an inverse depth.
+    pub(crate) fn before(&self, pixel: usize, inverse_depth: f32) -> Option<Vec3> {
+        self.0.fragments.texels()[pixel].filter(|_| self.0.inverse_depths[pixel] > inverse_depth)
     }
 }
 
 /// Cuts a triangle at the near plane, z = w in reversed depth (Sutherland & Hodgman 1974); up to four corners remain.
-fn clip_near(corners: &[ClipVertex; 3]) -> Vec<ClipVertex> {
+fn clip_near<A: Attributes>(corners: &[ClipVertex<A>; 3]) -> Vec<ClipVertex<A>> {
     let mut kept = Vec::with_capacity(4);
     for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (&corners[i], &corners[j])) {
         let (from, to) = (a.beyond_near(), b.beyond_near());
@@ -93,43 +150,39 @@ fn clip_near(corners: &[ClipVertex; 3]) -> Vec<ClipVertex> {
     kept
 }
 
-impl ClipVertex {
+impl<A: Attributes> ClipVertex<A> {
     /// How far the vertex lies beyond the near plane.
     fn beyond_near(&self) -> f32 {
         self.clip.w - self.clip.z
     }
 
     fn towards(&self, other: &Self, share: f32) -> Self {
-        let fragment = Fragment {
-            position: self.fragment.position.lerp(other.fragment.position, share),
-            normal: self.fragment.normal.lerp(other.fragment.normal, share),
-            mesh: self.fragment.mesh,
-        };
-        Self { clip: self.clip.lerp(other.clip, share), fragment }
+        Self { clip: self.clip.lerp(other.clip, share), attributes: self.attributes.towards(other.attributes, share) }
     }
 }
 
-struct Target {
-    fragments: Image<Option<Fragment>>,
+#[derive(Debug, Clone)]
+struct Target<A> {
+    fragments: Image<Option<A>>,
     /// 1/w of the nearest surface so far; 0 is infinitely far.
     inverse_depths: Vec<f32>,
 }
 
-impl Target {
-    fn new(width: u32, height: u32) -> Self {
+impl<A: Attributes> Target<A> {
+    fn new(camera: &Pinhole) -> Self {
+        let (width, height) = (camera.width(), camera.height());
         Self {
             fragments: Image::filled(width, height, None),
             inverse_depths: vec![0.0; width as usize * height as usize],
         }
     }
 
-    fn mesh(&mut self, mesh: &TriangleMesh, number: u32, clip_from_cell: Mat4) {
-        let vertex = |i: usize| {
-            let fragment = Fragment { position: mesh.positions()[i], normal: mesh.normals()[i], mesh: number };
-            ClipVertex { clip: clip_from_cell * fragment.position.extend(1.0), fragment }
-        };
-        let vertices: Vec<_> = (0..mesh.positions().len()).map(vertex).collect();
-        for triangle in mesh.triangles() {
+    /// Draws triangles between vertices, given by position and attributes.
+    fn mesh(&mut self, vertices: impl Iterator<Item = (Vec3, A)>, triangles: &[[u32; 3]], clip_from_cell: Mat4) {
+        let vertex =
+            |(position, attributes): (Vec3, A)| ClipVertex { clip: clip_from_cell * position.extend(1.0), attributes };
+        let vertices: Vec<_> = vertices.map(vertex).collect();
+        for triangle in triangles {
             let corners = triangle.map(|i| vertices[i as usize]);
             if corners.iter().all(|v| v.beyond_near() > 0.0) {
                 self.triangle(&corners);
@@ -151,7 +204,7 @@ impl Target {
         [x, y].map(|v| (v * SUBPIXEL).round().clamp(-1e9, 1e9) as i64)
     }
 
-    fn triangle(&mut self, corners: &[ClipVertex; 3]) {
+    fn triangle(&mut self, corners: &[ClipVertex<A>; 3]) {
         let mut corners = *corners;
         let mut points = corners.map(|corner| self.snap(corner.clip));
         let mut area = edge(points[0], points[1], points[2]);
@@ -183,21 +236,16 @@ impl Target {
     }
 
     /// Keeps a fragment if it is the nearest so far. `shares` are barycentric on the screen.
-    fn cover(&mut self, x: u32, y: u32, corners: &[ClipVertex; 3], shares: [f32; 3]) {
-        let [a, b, c] = [0, 1, 2].map(|i| shares[i] / corners[i].clip.w);
-        let inverse_depth = a + b + c;
+    fn cover(&mut self, x: u32, y: u32, corners: &[ClipVertex<A>; 3], shares: [f32; 3]) {
+        let weights = [0, 1, 2].map(|i| shares[i] / corners[i].clip.w);
+        let inverse_depth = weights[0] + weights[1] + weights[2];
         let index = y as usize * self.fragments.width() as usize + x as usize;
         if inverse_depth <= self.inverse_depths[index] {
             return;
         }
         self.inverse_depths[index] = inverse_depth;
-        let blend = |f: &dyn Fn(&Fragment) -> Vec3| {
-            let [p, q, r] = [0, 1, 2].map(|i| f(&corners[i].fragment));
-            (p * a + q * b + r * c) / inverse_depth
-        };
-        let mesh = corners[0].fragment.mesh;
-        self.fragments.texels_mut()[index] =
-            Some(Fragment { position: blend(&|f| f.position), normal: blend(&|f| f.normal), mesh });
+        let attributes = corners.map(|corner| corner.attributes);
+        self.fragments.texels_mut()[index] = Some(A::mean(attributes, weights, inverse_depth));
     }
 }
 

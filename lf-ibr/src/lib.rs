@@ -14,7 +14,7 @@
 //! From the images of a slab alone, [`focus_from_images`] finds its focal plane, and [`view`] makes pictures between its cameras, to be
 //! held against some that were left out: [`hold_out`].
 //!
-//! [`draw_frame`] draws any number of placed and tinted [`Reflector`]s and what is behind them; [`SlabField::viewed`] shows which
+//! [`draw_frame`] draws any number of placed and tinted [`Reflector`]s and what is [`Behind`] them; [`SlabField::viewed`] shows which
 //! slab answered, and which rays none holds.
 //!
 //! Colours are interpolated as they are stored, sRGB-encoded, as the paper's hardware did and as the GPU passes do.
@@ -52,7 +52,7 @@ pub use guide::guide_ends;
 pub use guided::GuidedField;
 pub use holdout::{HoldOut, LeftOut, hold_out};
 pub use proxy::{BoxCube, SphereCube};
-pub use scene::{Reflector, draw_frame};
+pub use scene::{Behind, Reflector, draw_frame};
 pub use slabs::{SlabField, ViewedSlabs};
 pub use texel::Texel;
 pub use views::{Blend, depth_planes, view};

@@ -24,6 +24,14 @@ pub enum GeometryError {
         /// Its value.
         value: f32,
     },
+    /// A number that may be zero, but not less, is less.
+    #[error("{what} must not be negative, is {value}")]
+    Negative {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f32,
+    },
     /// A count of zero.
     #[error("{what} must be at least 1")]
     ZeroCount {

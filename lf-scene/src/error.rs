@@ -20,6 +20,14 @@ pub enum SceneError {
     /// A scene without triangles, or with a vertex that is not finite.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// Edges would be cut too short.
+    #[error("cut into triangles with edges of at most {edge} m, the scene has more than {max}; allow longer edges")]
+    TooManyTriangles {
+        /// The longest edge that was asked for, metres.
+        edge: f32,
+        /// How many triangles there may be.
+        max: usize,
+    },
 }
 
 /// What is wrong with a file that was to be imported.

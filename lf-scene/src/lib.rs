@@ -3,7 +3,7 @@
 //! A [`Scene`] is triangles with textured materials, lights and an environment, made in code ([`EMBEDDED`]) or read from glTF
 //! ([`import_gltf`]). A [`Tracer`] answers one ray at a time. From it come the texels of slabs ([`TexelSampler`], [`capture_slabs`]), cube
 //! maps ([`trace_cube`], [`capture_cube`]) and the reference pictures ([`mod@reference`]).
-//! [`reflectors`] holds the objects to look at.
+//! [`rasterised()`] makes triangles with light at their corners of it, [`reflectors`] holds the objects to look at.
 //!
 //! # The tracer
 //!
@@ -44,6 +44,7 @@ mod material;
 mod path;
 mod quality;
 mod random;
+mod rasterised;
 pub mod reference;
 pub mod reflectors;
 mod rounded;
@@ -66,6 +67,7 @@ pub use import::{
 pub use light::{Illuminant, Light, Lighting};
 pub use material::{ColorEncoding, Material, Pattern, Scattering, Surface, Texture};
 pub use quality::{Estimate, Illumination, Quality};
+pub use rasterised::rasterised;
 pub use scene::{Scene, SceneBuilder, Vertex};
 pub use tracer::{Traced, Tracer};
 pub use view::view;

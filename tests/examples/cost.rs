@@ -17,8 +17,8 @@ use lf_compress::bc1::Quality;
 use lf_compress::format::{Container, Limits, TexelEncoding};
 use lf_compress::{PackedCube, PackedLightField};
 use lf_gpu::{
-    CubePicture, Frame, Gpu, GpuError, MirrorMesh, ReflectionPass, Reflector, SlabRenderer, SlabTexture, Storage,
-    StuvBuffer, Target,
+    Behind, CubePicture, Frame, Gpu, GpuError, MirrorMesh, ReflectionPass, Reflector, SlabRenderer, SlabTexture,
+    Storage, StuvBuffer, Target,
 };
 use lf_math::{
     Cell, CubeMap, DistanceCube, Image, LightFieldGeometry, Pinhole, Placement, PlanePlacement, Reflectance,
@@ -223,7 +223,7 @@ fn second_passes(stage: &Stage<'_>, renderer: &mut SlabRenderer<'_>, mesh: &Mirr
     let stuv = StuvBuffer::new(stage.gpu, stage.camera.width(), stage.camera.height())?;
     let reflector =
         Reflector { mesh, placement: Placement::IDENTITY, reflectance: Reflectance::MIRROR, normal_map: None };
-    let frame = Frame { camera: &stage.camera, reflectors: &[reflector], background: false, view: View::Color };
+    let frame = Frame { camera: &stage.camera, reflectors: &[reflector], behind: Behind::Nothing, view: View::Color };
     renderer.ask(&stuv, &frame)?;
     renderer.answer(&stuv, &stage.target, View::Color)?;
     stage.gpu.wait()?;

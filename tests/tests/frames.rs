@@ -3,13 +3,13 @@
 use glam::{Quat, Vec3};
 use half::f16;
 use lf_compress::PackedLightField;
-use lf_gpu::{Frame, Gpu, MirrorMesh, NormalMapTexture, SlabRenderer, SlabTexture, StuvBuffer, Target};
-use lf_ibr::{SlabField, Texel, draw_frame};
+use lf_gpu::{Frame, Gpu, MirrorMesh, NormalMapTexture, SceneMesh, SlabRenderer, SlabTexture, StuvBuffer, Target};
+use lf_ibr::{Behind, SlabField, Texel, draw_frame};
 use lf_math::{
-    Image, LightFieldGeometry, NormalMap, Pinhole, Placement, Reflectance, SampledAxis, Slab, SlabTexels, TriangleMesh,
-    View, linear_from_srgb,
+    Image, LightFieldGeometry, LitMesh, NormalMap, Pinhole, Placement, Reflectance, SampledAxis, Slab, SlabTexels,
+    TriangleMesh, View, linear_from_srgb, srgb8_from_linear,
 };
-use lf_scene::{Capture, reflectors};
+use lf_scene::{Capture, Tracer, rasterised, reference, reflectors};
 use lf_tests::{capture, gpu, museum, packed};
 
 const SIZE: u32 = 384;
@@ -89,7 +89,7 @@ fn placed<'a>(
 fn expected<T: Texel>(
     field: &SlabField<T>,
     mirrors: &[Mirror],
-    background: bool,
+    behind: Behind<'_>,
     view: View,
     camera: &Pinhole,
 ) -> Image<[u8; 4]> {
@@ -98,7 +98,7 @@ fn expected<T: Texel>(
         let (placement, reflectance, normal_map) = (*placement, *reflectance, normal_map.as_ref());
         reflectors.push(lf_ibr::Reflector { mesh, placement, reflectance, normal_map });
     }
-    draw_frame(&reflectors, background, &field.viewed(view), camera).expect("draws")
+    draw_frame(&reflectors, behind, &field.viewed(view), camera).expect("draws")
 }
 
 /// Differences of a channel over the pixels that both cover.
@@ -132,11 +132,13 @@ fn compare<T: Texel>(what: &str, field: &PackedLightField, twin: &SlabField<T>, 
     let reflectors = placed(&meshes, mirrors);
     for (eye, camera) in cameras().iter().enumerate() {
         for (view, background) in View::ALL.into_iter().flat_map(|view| [(view, false), (view, true)]) {
-            let frame = Frame { camera, reflectors: &reflectors, background, view };
+            let behind = if background { lf_gpu::Behind::Slabs } else { lf_gpu::Behind::Nothing };
+            let frame = Frame { camera, reflectors: &reflectors, behind, view };
             renderer.draw(&target, &frame).expect("draws");
             // Views do not heed reflectances.
             let shown = if view == View::Color { mirrors.to_vec() } else { bare(mirrors) };
-            let twin = expected(twin, &shown, background, view, camera);
+            let behind = if background { Behind::Environment } else { Behind::Nothing };
+            let twin = expected(twin, &shown, behind, view, camera);
             let label = format!("{what}, {view:?}, eye {eye}, background {background}");
             let found = differences(&label, &target.read(&gpu).expect("reads"), &twin);
             // What is left lies on creases of the teapot, where neighbouring rays part, and where slabs meet.
@@ -200,7 +202,7 @@ fn two_passes_draw_what_one_does() {
     let reflectors = placed(&meshes, &mirrors);
     for camera in &cameras() {
         for view in View::ALL {
-            let frame = Frame { camera, reflectors: &reflectors, background: true, view };
+            let frame = Frame { camera, reflectors: &reflectors, behind: lf_gpu::Behind::Slabs, view };
             renderer.draw(&target, &frame).expect("draws");
             let one = target.read(&gpu).expect("reads");
             renderer.ask(&stuv, &frame).expect("asks");
@@ -211,7 +213,7 @@ fn two_passes_draw_what_one_does() {
     }
     // Pixels of the background, by the view ray alone; the last camera is the one whose eye is inside.
     let camera = cameras()[1];
-    let frame = Frame { camera: &camera, reflectors: &[], background: true, view: View::Color };
+    let frame = Frame { camera: &camera, reflectors: &[], behind: lf_gpu::Behind::Slabs, view: View::Color };
     renderer.ask(&stuv, &frame).expect("asks");
     let asked = stuv.read(&gpu).expect("reads");
     for (x, y) in (0..SIZE).step_by(7).flat_map(|y| (0..SIZE).step_by(5).map(move |x| (x, y))) {
@@ -225,8 +227,11 @@ fn two_passes_draw_what_one_does() {
         assert!(near(asked.get(x, y)) || tie, "{x} {y}: {:?} {coord:?}", asked.get(x, y));
     }
     let tinted = [lf_gpu::Reflector { reflectance: Reflectance::new(Vec3::X, None).expect("shares"), ..reflectors[0] }];
-    let frame = Frame { reflectors: &tinted, ..frame };
-    assert!(renderer.ask(&stuv, &frame).is_err());
+    let tinted = Frame { reflectors: &tinted, ..frame };
+    assert!(renderer.ask(&stuv, &tinted).is_err());
+    let scene =
+        SceneMesh::new(&gpu, &rasterised(&museum(), field.geometry().cell(), 10.0).expect("cut")).expect("uploads");
+    assert!(renderer.ask(&stuv, &Frame { behind: lf_gpu::Behind::Scene(&scene), ..frame }).is_err());
 }
 
 /// The paper's slabs hold every ray of a mirror inside the cell, from any eye; shrunken ones do not, and say so.
@@ -243,7 +248,7 @@ fn rays_outside_the_slabs_are_painted() {
         let frame = Frame {
             camera: &cameras()[0],
             reflectors: &placed(&meshes, &mirrors),
-            background: false,
+            behind: lf_gpu::Behind::Nothing,
             view: View::Range,
         };
         renderer.draw(&target, &frame).expect("draws");
@@ -259,4 +264,106 @@ fn rays_outside_the_slabs_are_painted() {
     let slabs = paper.geometry.slabs().iter().map(shrunken).collect();
     let geometry = LightFieldGeometry::new(*paper.geometry.cell(), slabs).expect("slabs");
     assert!(painted(&Capture { geometry, ..paper }) > 1000);
+}
+
+/// The museum's own triangles behind the mirrors, and in front of them.
+fn museum_triangles() -> LitMesh {
+    rasterised(&museum(), &lf_scene::museum::cell(), 0.25).expect("triangles")
+}
+
+/// Eyes outside the cell that look past a column, and one inside.
+fn eyes_in_the_room() -> [Pinhole; 3] {
+    let look = |eye, fov| Pinhole::look_at(eye, Vec3::ZERO, fov, SIZE, SIZE).expect("a camera");
+    // The column's middle is 2.1 m from the cell's, at π/8; it hides half of what is in the cell.
+    let angle = std::f32::consts::PI / 8.0 + 0.083;
+    let beside = Vec3::new(angle.cos(), 0.0, angle.sin()) * 3.2;
+    [look(beside, 0.4), look(Vec3::new(-1.0, 1.3, 4.0), 0.9), look(Vec3::new(0.45, 0.3, 0.48), 1.4)]
+}
+
+#[test]
+fn frames_with_the_scenes_triangles_agree() {
+    let (gpu, field) = (gpu(), packed(&focused()));
+    let texture = SlabTexture::new(&gpu, &field).expect("uploads");
+    let mut renderer = SlabRenderer::new(&gpu, &texture).expect("a renderer");
+    let target = Target::new(&gpu, SIZE, SIZE).expect("a target");
+    let (mirrors, geometry, twin) = (mirrors(), museum_triangles(), twin(&field));
+    let scene = SceneMesh::new(&gpu, &geometry).expect("uploads");
+    let meshes = uploaded(&gpu, &mirrors);
+    let reflectors = placed(&meshes, &mirrors);
+    for (eye, camera) in eyes_in_the_room().iter().enumerate() {
+        for count in [mirrors.len(), 0] {
+            let behind = lf_gpu::Behind::Scene(&scene);
+            let frame = Frame { camera, reflectors: &reflectors[..count], behind, view: View::Color };
+            renderer.draw(&target, &frame).expect("draws");
+            let expected = expected(&twin, &mirrors[..count], Behind::Scene(&geometry), View::Color, camera);
+            let label = format!("the scene's triangles, eye {eye}, {count} mirrors");
+            let found = differences(&label, &target.read(&gpu).expect("reads"), &expected);
+            assert!(found.p99 <= 1 && found.p999 <= 3, "{label}");
+            assert!(expected.texels().iter().all(|texel| texel[3] == 255), "the room is closed");
+        }
+    }
+}
+
+/// Away from the edges of patterns and shadows the light is the ray tracer's.
+#[test]
+fn the_scenes_triangles_look_as_they_are_traced() {
+    let (tracer, geometry) = (museum(), museum_triangles());
+    let field = twin(&packed(&focused()));
+    for camera in &eyes_in_the_room() {
+        let drawn = expected(&field, &[], Behind::Scene(&geometry), View::Color, camera);
+        let traced = reference::background(&tracer, &lf_scene::museum::cell(), camera).map(srgb8_from_linear);
+        let pairs = drawn.texels().iter().zip(traced.texels());
+        let mut apart: Vec<u8> = pairs.map(|(a, b)| (0..3).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0)).collect();
+        apart.sort_unstable();
+        let [half, most] = [0.5, 0.7].map(|share| apart[(apart.len() as f64 * share) as usize]);
+        println!("half of the pixels are within {half}/255 of the traced ones, 70 % within {most}/255");
+        assert!(half <= 1 && most <= 2, "{half} {most}");
+    }
+}
+
+/// Where a ray tracer sees a mirror that stands in the museum, and how many more pixels would show it if nothing stood in front.
+fn traced_mask(tracer: &Tracer, mirror: &reference::Mirror, camera: &Pinhole) -> (Image<bool>, usize) {
+    let (cell, mut hidden) = (lf_scene::museum::cell(), 0);
+    let mut mask = Image::filled(SIZE, SIZE, false);
+    for (i, seen) in (0..SIZE * SIZE).zip(mask.texels_mut()) {
+        let ray = camera.ray(i % SIZE, i / SIZE);
+        let Some(reflected) = mirror.reflected(&ray) else { continue };
+        let depth = (reflected.origin - ray.origin).length() / ray.direction.length();
+        let wall = tracer.distance(cell.world_from_cell(ray.origin).as_vec3(), ray.direction);
+        *seen = wall.is_none_or(|wall| depth < wall);
+        hidden += usize::from(!*seen);
+    }
+    (mask, hidden)
+}
+
+/// A black mirror shows where it is: the museum is nowhere black.
+#[test]
+fn a_column_hides_a_mirror_where_a_ray_tracer_says_so() {
+    let (gpu, field, tracer) = (gpu(), packed(&focused()), museum());
+    let texture = SlabTexture::new(&gpu, &field).expect("uploads");
+    let mut renderer = SlabRenderer::new(&gpu, &texture).expect("a renderer");
+    let target = Target::new(&gpu, SIZE, SIZE).expect("a target");
+    let (geometry, camera) = (museum_triangles(), eyes_in_the_room()[0]);
+    let mesh = reflectors::sphere(5).fitted(Vec3::ZERO, 0.4).expect("fits");
+    let black = Reflectance::new(Vec3::ZERO, None).expect("shares");
+    let mirrors = [Mirror { mesh: mesh.clone(), placement: Placement::IDENTITY, reflectance: black, normal_map: None }];
+    let scene = SceneMesh::new(&gpu, &geometry).expect("uploads");
+    let meshes = uploaded(&gpu, &mirrors);
+    let behind = lf_gpu::Behind::Scene(&scene);
+    let frame = Frame { camera: &camera, reflectors: &placed(&meshes, &mirrors), behind, view: View::Color };
+    renderer.draw(&target, &frame).expect("draws");
+    let drawn = [
+        ("GPU", target.read(&gpu).expect("reads")),
+        ("CPU", expected(&twin(&field), &mirrors, Behind::Scene(&geometry), View::Color, &camera)),
+    ];
+    let (mask, hidden) = traced_mask(&tracer, &reference::Mirror::new(mesh), &camera);
+    let seen = mask.texels().iter().filter(|seen| **seen).count();
+    assert!(seen > 5000 && hidden > 5000, "{seen} {hidden}");
+    // Pixels whose neighbours are all alike.
+    let inner = |x: u32, y: u32| (y - 1..=y + 1).all(|j| (x - 1..=x + 1).all(|i| mask.get(i, j) == mask.get(x, y)));
+    for (device, picture) in drawn {
+        let within = (1..SIZE - 1).flat_map(|y| (1..SIZE - 1).map(move |x| (x, y))).filter(|&(x, y)| inner(x, y));
+        let wrong = within.filter(|&(x, y)| (picture.get(x, y) == [0, 0, 0, 255]) != mask.get(x, y)).count();
+        assert_eq!(wrong, 0, "{device}");
+    }
 }

@@ -1,7 +1,7 @@
 //! The indices that the GPU works out where mirrors are seen at grazing angles, against those of the CPU.
 
 use glam::{Vec2, Vec3};
-use lf_gpu::{Frame, MirrorMesh, Reflector, SlabRenderer, SlabTexture, StuvBuffer};
+use lf_gpu::{Behind, Frame, MirrorMesh, Reflector, SlabRenderer, SlabTexture, StuvBuffer};
 use lf_ibr::GBuffer;
 use lf_math::{
     Image, IndexedRay, LightFieldGeometry, Pinhole, Placement, Ray, Reflectance, TriangleMesh, View, normalized,
@@ -74,7 +74,7 @@ fn grazing_mirrors_ask_for_the_same_on_both_sides() {
         // Through a telescope where the plate would be a line.
         for (height, fov) in [(0.3, 0.8), (0.03, 0.8), (0.003, 0.03)] {
             let camera = Pinhole::look_at(Vec3::new(0.8, height, 0.9), Vec3::ZERO, fov, SIZE, SIZE).expect("a camera");
-            let frame = Frame { camera: &camera, reflectors: &reflectors, background: false, view: View::Color };
+            let frame = Frame { camera: &camera, reflectors: &reflectors, behind: Behind::Nothing, view: View::Color };
             renderer.ask(&stuv, &frame).expect("asks");
             let asked = stuv.read(&gpu).expect("reads");
             let found = agreement(field.geometry(), &GBuffer::rasterize(&mesh, &camera), &asked);

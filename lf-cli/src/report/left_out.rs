@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use anyhow::{Context, Result};
 use glam::Vec3;
 use lf_compress::PackedLightField;
-use lf_gpu::{Frame, Gpu, MirrorMesh, ReflectionPass, Reflector, SlabRenderer, SlabTexture, Target};
+use lf_gpu::{Behind, Frame, Gpu, MirrorMesh, ReflectionPass, Reflector, SlabRenderer, SlabTexture, Target};
 use lf_ibr::{BlockField, Environment};
 use lf_math::{Image, LightFieldGeometry, Placement, Ray, Reflectance, View};
 use lf_report::{Table, Timing};
@@ -195,7 +195,7 @@ fn shader(field: &PackedLightField, shot: &Shot, gpu: &Gpu, repeats: usize) -> R
         let reflectors = [Reflector { mesh: &mesh, placement: Placement::IDENTITY, reflectance, normal_map: None }];
         let mut frames = vec![];
         for camera in shot.cameras() {
-            let frame = Frame { camera, reflectors: &reflectors, background: false, view: View::Color };
+            let frame = Frame { camera, reflectors: &reflectors, behind: Behind::Nothing, view: View::Color };
             frames.push(timed(Rendered { gpu, renderer: &mut renderer, target: &target, frame }, repeats)?);
         }
         let (timings, pictures): (Vec<_>, Vec<_>) = frames.into_iter().unzip();

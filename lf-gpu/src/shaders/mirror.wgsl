@@ -1,13 +1,6 @@
 // The mirrors' vertex stage passes position and normal on; `reflected` mirrors the view ray (Eq. 2 of Yu, Yang & McMillan).
 // CPU twin: lf-ibr/src/scene.rs. `unit_normal` comes from smooth.wgsl or relief.wgsl.
 
-struct Frame {
-    clip_from_cell: mat4x4f,
-    // Cell space, metres.
-    eye: vec3f,
-    padding: f32,
-}
-
 // One mirror of a frame. Mirrors `InstanceUniform` in uniforms.rs.
 struct Instance {
     // A similarity.
@@ -23,7 +16,6 @@ struct Instance {
     padding_z: f32,
 }
 
-@group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(6) var<storage, read> instances: array<Instance>;
 
 struct Surface {

@@ -1,7 +1,7 @@
 //! Whole pictures: in other units of length, turned by right angles, and along the seams of faces.
 
 use glam::{DMat3, DQuat, DVec3, Vec2, Vec3};
-use lf_ibr::{Environment, Reflector, SlabField, draw_frame};
+use lf_ibr::{Behind, Environment, Reflector, SlabField, draw_frame};
 use lf_math::{
     Cell, Image, LightFieldGeometry, Pinhole, Placement, PlanePlacement, Ray, Reflectance, SlabTexels, TriangleMesh,
 };
@@ -61,7 +61,7 @@ impl Setting {
         let [eye, forward, up] =
             [Vec3::new(0.9, 0.5, 1.1), Vec3::new(-0.9, -0.5, -1.1), Vec3::Y].map(|v| self.turned(v));
         let camera = Pinhole::looking(eye * self.scale, forward, up, 0.7, SIZE, SIZE).expect("a camera");
-        draw_frame(&mirrors, true, &self.field(Some(3.0), [33; 2]), &camera).expect("draws")
+        draw_frame(&mirrors, Behind::Environment, &self.field(Some(3.0), [33; 2]), &camera).expect("draws")
     }
 }
 
