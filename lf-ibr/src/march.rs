@@ -33,7 +33,8 @@ pub(crate) fn crossing(
     let step = (near - far) / steps as f32;
     let mut last = near;
     for i in 1..=steps {
-        let mut next = near - i as f32 * step;
+        // The last of the steps may round to beyond infinity.
+        let mut next = (near - i as f32 * step).max(far);
         if free(ray.at(next.recip())) {
             last = next;
             continue;
@@ -61,5 +62,22 @@ mod tests {
         let step = (2.0 - 0.02) / 32.0 / 256.0;
         assert!((found.free.recip() - found.hidden.recip() - step).abs() < 1e-6, "{found:?}");
         assert_eq!(crossing(&ray, [0.5, 2.9], 32, 8, free), None);
+    }
+
+    #[test]
+    fn no_step_leads_beyond_the_end() {
+        let ray = Ray { origin: Vec3::ZERO, direction: Vec3::X };
+        // Far ends whose inverse is lost beside that of the near one.
+        for far in [10.0, 1e7, 1e9, 1e20, 1e38] {
+            for (near, steps) in [(0.01, 64), (0.3, 7), (0.5, 128)] {
+                let mut last = near;
+                let mut free = |p: Vec3| {
+                    assert!(p.is_finite() && p.x >= last && p.x <= far * (1.0 + 1e-6), "{near} {far} {steps}: {p}");
+                    last = p.x * (1.0 - 1e-6);
+                    true
+                };
+                assert_eq!(crossing(&ray, [near, far], steps, 6, &mut free), None);
+            }
+        }
     }
 }

@@ -271,6 +271,23 @@ fn probes_agree_within_two_steps_on_999_of_1000_pixels() {
     }
 }
 
+/// Something so far away that its inverse is lost beside that of what is near: the last step used to lead beyond infinity, to nothing.
+#[test]
+fn probes_agree_on_what_is_far_away() {
+    let gpu = gpu();
+    let farther = |cube: &PackedCube| {
+        let cube = cube.decode().expect("decodes");
+        let mut depths = cube.inverse_depths().clone();
+        depths[0] = Image::filled(64, 64, 1e-9);
+        let cube = DistanceCube::new(cube.position(), cube.radiance().clone(), depths).expect("a cube");
+        PackedCube::encode(&cube, Quality::Standard).expect("encodes")
+    };
+    let packed: Vec<_> = packed_cubes(&[[-1.0; 3], [1.0; 3]], 64).iter().map(farther).collect();
+    let cubes = packed.iter().map(|cube| cube.decode().expect("decodes")).collect();
+    let pass = ReflectionPass::probes(&gpu, &packed, 48, 6).expect("a pass");
+    compare(&gpu, "distance cubes and what is far away", &pass, &ProbeField::new(cubes, 48, 6).expect("two"), 0.997);
+}
+
 fn guide() -> DepthGuide {
     let tracer = museum();
     let geometry = LightFieldGeometry::around(museum::cell(), PlanePlacement::CellCenter, 5, 24).expect("slabs");

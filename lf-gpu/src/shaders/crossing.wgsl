@@ -13,7 +13,8 @@ fn crossing(cube: u32, start: vec3f, unit: vec3f, span: vec2f, steps: u32, halvi
     var hidden = near;
     var found = false;
     for (var i = 1u; i <= steps && !found; i++) {
-        hidden = near - f32(i) * step;
+        // The last of the steps may round to beyond infinity.
+        hidden = max(near - f32(i) * step, 1.0 / span.y);
         found = !is_free(cube, start + unit / hidden);
         free = select(hidden, free, found);
     }
