@@ -93,9 +93,7 @@ impl Stage<'_> {
             let mut frame = None;
             let mut render =
                 || frame = Some(reference::render(&self.source.tracer, &self.source.cell, &mirror, camera));
-            let first = measure(0, 1, &mut render);
-            // What takes long is not disturbed by a cold start.
-            let timing = if first.median() > SLOW { first } else { measure(0, REFERENCE_REPEATS, render) };
+            let timing = paced(REFERENCE_REPEATS, &mut render);
             references.extend(frame);
             done();
             timing
@@ -155,17 +153,21 @@ pub(crate) fn compared(
     errors.collect()
 }
 
-/// Draws a frame several times; the timing and the picture. The first does not count, unless it takes so long that a cold start does not
-/// disturb it: then it is the only one.
+/// Times a frame several times. The first does not count, unless it takes so long that a cold start does not disturb it: then it is the
+/// only one.
+fn paced(repeats: usize, mut draw: impl FnMut()) -> Timing {
+    let first = measure(0, 1, &mut draw);
+    if first.median() > SLOW { first } else { measure(0, repeats, draw) }
+}
+
+/// Draws a frame several times; the timing and the picture.
 pub(crate) fn timed(mut method: impl Method, repeats: usize) -> Result<(Timing, Image<[u8; 4]>)> {
     let mut outcome = Ok(());
-    let mut draw = || {
+    let timing = paced(repeats, || {
         if let Err(error) = method.draw() {
             outcome = Err(error);
         }
-    };
-    let first = measure(0, 1, &mut draw);
-    let timing = if first.median() > SLOW { first } else { measure(0, repeats, draw) };
+    });
     outcome?;
     Ok((timing, method.picture()?))
 }

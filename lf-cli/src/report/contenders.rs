@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use glam::Vec3;
+use lf_capture::Options;
 use lf_compress::bc1::Quality;
 use lf_compress::{DepthGuide, GuidedCubes, PackedCube, PackedLightField};
 use lf_format::TexelEncoding;
@@ -259,10 +260,7 @@ fn slabs(source: &Source, case: &SlabsCase, budget: &Budget<'_>, gpu: Option<&Gp
     if least > budget.bytes {
         return Ok(());
     }
-    let file = budget.folder.join(format!("{}-slabs.lfslab", source.name()));
-    let captured = capture_to(source, sampling, case.focus, case.options, &file)?;
-    let field = load(&FileArgs::new(&file))?;
-    std::fs::remove_file(&file).with_context(|| file.display().to_string())?;
+    let (captured, field) = captured(source, case, case.options, budget.folder)?;
     let storages: &[Storage] = if blocks {
         let environment = BlockField::new(&field)?;
         each(&of_slabs(&captured, case, &case.codec.to_uppercase(), stored(&field), Drawn::OnCpu(&environment)))?;
@@ -284,6 +282,20 @@ fn slabs(source: &Source, case: &SlabsCase, budget: &Budget<'_>, gpu: Option<&Gp
         }
     }
     Ok(())
+}
+
+/// Captures slabs by way of a file, which is not kept.
+pub(crate) fn captured(
+    source: &Source,
+    case: &SlabsCase,
+    options: Options,
+    folder: &Path,
+) -> Result<(Captured, PackedLightField)> {
+    let file = folder.join(format!("{}-slabs.lfslab", source.name()));
+    let captured = capture_to(source, &case.sampling, case.focus, options, &file)?;
+    let field = load(&FileArgs::new(&file))?;
+    std::fs::remove_file(&file).with_context(|| file.display().to_string())?;
+    Ok((captured, field))
 }
 
 fn of_slabs<'a>(captured: &Captured, case: &SlabsCase, how: &str, bytes: u64, drawn: Drawn<'a>) -> Contender<'a> {

@@ -3,22 +3,21 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use glam::Vec3;
+use lf_capture::Options;
 use lf_compress::PackedLightField;
+use lf_format::TexelEncoding;
 use lf_gpu::{Behind, Frame, Gpu, MirrorMesh, ReflectionPass, Reflector, SlabRenderer, SlabTexture, Target};
 use lf_ibr::{BlockField, Environment};
 use lf_math::{Image, LightFieldGeometry, Placement, Ray, Reflectance, View};
 use lf_report::{Table, Timing};
 
-use super::contenders::{Drawn, stored};
+use super::contenders::{Drawn, captured, stored};
 use super::shots::Shot;
 use super::spec::{Method, SlabsCase};
-use crate::args::FileArgs;
-use crate::capture::capture_to;
 use crate::device::Method as Draws;
 use crate::frames::{merged, timed};
-use crate::input::load;
 use crate::sources::Source;
 
 /// Whole slabs of more bytes than this are not captured only to be cropped.
@@ -49,7 +48,8 @@ pub(crate) fn table(
         return Ok(None);
     };
     eprintln!("left out {}", case.layout);
-    let whole = whole(source, &case, folder)?;
+    let options = Options { whole: true, encoding: TexelEncoding::Bc1, ..case.options };
+    let (_, whole) = captured(source, &case, options, folder)?;
     let cropped = whole.cropped()?;
     let (least, most) = shot.mesh.bounds();
     let tight = whole.cropped_to([least, most])?;
@@ -90,16 +90,6 @@ fn whole_bytes(source: &Source, case: &SlabsCase) -> Result<u64> {
     let count =
         |slab: &lf_math::Slab| slab.cameras().iter().chain(&slab.resolution()).map(|&n| u64::from(n)).product::<u64>();
     Ok(geometry.slabs().iter().map(count).sum::<u64>() / 2)
-}
-
-/// The slabs without anything left out.
-fn whole(source: &Source, case: &SlabsCase, folder: &Path) -> Result<PackedLightField> {
-    let file = folder.join(format!("{}-whole.lfslab", source.name()));
-    let options = lf_capture::Options { whole: true, encoding: lf_format::TexelEncoding::Bc1, ..case.options };
-    capture_to(source, &case.sampling, case.focus, options, &file)?;
-    let field = load(&FileArgs::new(&file))?;
-    std::fs::remove_file(&file).with_context(|| file.display().to_string())?;
-    Ok(field)
 }
 
 /// Draws the frames from a light field, on the GPU if there is one.
