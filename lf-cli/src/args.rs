@@ -277,6 +277,7 @@ pub(crate) struct ReflectorArg {
 pub(crate) struct TintArg(pub(crate) Vec3);
 
 /// What a preset stands for.
+#[derive(PartialEq)]
 pub(crate) struct Sampling {
     /// Per axis.
     pub(crate) cameras: [u32; 2],

@@ -128,6 +128,32 @@ fn a_specification_is_swept_and_what_is_left_out_is_lossless() {
 }
 
 #[test]
+fn every_result_has_a_name_of_its_own() {
+    let folder = TempDir::new().unwrap();
+    // Two codecs, two numbers of rays, and one case that is asked for twice; on the GPU too, where there is one.
+    let slabs = |codec: &str, rays: &str| {
+        let slabs = SPEC.split("[[methods]]").nth(2).unwrap().replace("[\"rgba8\", \"bc1-fast\"]", codec);
+        format!("[[methods]]{}", slabs.replace("rays = 1", rays).replace("[\"none\", \"median\"]", "[\"none\"]"))
+    };
+    let head = SPEC.split("[[methods]]").next().unwrap().replace("[24, 32]", "[24]");
+    let head = head.replace("[\"sphere:3\", \"teapot:4@0.1,0,0,0.3\"]", "[\"sphere:3\"]");
+    let both = slabs("[\"bc1-fast\", \"bc1-best\"]", "rays = 1") + &slabs("[\"bc1-best\"]", "rays = 1");
+    let spec = head + &both + &slabs("[\"bc1-best\"]", "rays = 2");
+    fs::write(folder.path().join("slabs.toml"), spec).unwrap();
+    let output = lfslab(&["report", "slabs.toml", "--out", "out"], folder.path());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: Value = serde_json::from_slice(&fs::read(folder.path().join("out/report.json")).unwrap()).unwrap();
+    let results = json["results"].as_array().unwrap();
+    let mut names: Vec<_> =
+        results.iter().map(|r| format!("{} {} {}", r["method"], r["parameters"], r["device"])).collect();
+    names.sort();
+    // Cropped and whole, of three kinds, and the reference.
+    let on_cpu = names.iter().filter(|name| name.ends_with("\"CPU\"")).count();
+    assert_eq!(on_cpu, 2 * 3 + 1, "{names:#?}");
+    assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:#?}");
+}
+
+#[test]
 fn a_later_report_is_held_to_an_earlier_one() {
     let folder = TempDir::new().unwrap();
     let spec = SPEC

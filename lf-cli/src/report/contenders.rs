@@ -84,14 +84,19 @@ pub(crate) fn contenders(
     each: &mut Each<'_>,
 ) -> Result<()> {
     let mut within = |contender: &Contender<'_>| if contender.bytes <= budget.bytes { each(contender) } else { Ok(()) };
+    let mut captured: Vec<SlabsCase> = vec![];
     for method in methods {
         match method {
             Method::Cube(spec) => one_cube(source, spec, budget, gpu, &mut within)?,
             Method::Probes(spec) => probes(source, spec, budget, gpu, &mut within)?,
             Method::Guided(spec) => guided(source, spec, budget, gpu, &mut within)?,
             Method::Slabs(spec) => {
+                // Sweeps along several axes meet in one case.
                 for case in spec.cases() {
-                    slabs(source, &case, budget, gpu, &mut within)?;
+                    if !captured.contains(&case) {
+                        slabs(source, &case, budget, gpu, &mut within)?;
+                        captured.push(case);
+                    }
                 }
             }
         }
@@ -263,11 +268,11 @@ fn slabs(source: &Source, case: &SlabsCase, budget: &Budget<'_>, gpu: Option<&Gp
     let (captured, field) = captured(source, case, case.options, budget.folder)?;
     let storages: &[Storage] = if blocks {
         let environment = BlockField::new(&field)?;
-        each(&of_slabs(&captured, case, &case.codec.to_uppercase(), stored(&field), Drawn::OnCpu(&environment)))?;
+        each(&of_slabs(&captured, case, None, stored(&field), Drawn::OnCpu(&environment)))?;
         &[Storage::Bc1Volume, Storage::Bc1Array, Storage::Rgba8Array]
     } else {
         let environment = SlabField::new(field.geometry().clone(), field.decode(MAX_DECODED_BYTES)?)?;
-        each(&of_slabs(&captured, case, "RGBA8", stored(&field), Drawn::OnCpu(&environment)))?;
+        each(&of_slabs(&captured, case, None, stored(&field), Drawn::OnCpu(&environment)))?;
         &[Storage::Rgba8Array]
     };
     for &storage in storages {
@@ -276,7 +281,7 @@ fn slabs(source: &Source, case: &SlabsCase, budget: &Budget<'_>, gpu: Option<&Gp
             Ok(texture) => {
                 let pass = ReflectionPass::slabs(gpu, &texture)?;
                 let drawn = Drawn::OnGpu(gpu, &pass);
-                each(&of_slabs(&captured, case, &storage.to_string(), texture.bytes(), drawn))?;
+                each(&of_slabs(&captured, case, Some(storage), texture.bytes(), drawn))?;
             }
             Err(error) => eprintln!("left out: {error}"),
         }
@@ -298,10 +303,19 @@ pub(crate) fn captured(
     Ok((captured, field))
 }
 
-fn of_slabs<'a>(captured: &Captured, case: &SlabsCase, how: &str, bytes: u64, drawn: Drawn<'a>) -> Contender<'a> {
+fn of_slabs<'a>(
+    captured: &Captured,
+    case: &SlabsCase,
+    storage: Option<Storage>,
+    bytes: u64,
+    drawn: Drawn<'a>,
+) -> Contender<'a> {
+    let cover = if case.options.whole { "whole" } else { "cropped" };
+    let (codec, rays) = (case.codec.to_uppercase(), case.options.grid.pow(2));
+    let storage = storage.map_or_else(String::new, |storage| format!(", {storage}"));
     Contender {
         name: "slabs",
-        parameters: format!("{}; {}; {how}", case.layout, if case.options.whole { "whole" } else { "cropped" }),
+        parameters: format!("{}; {cover}; {codec}{storage}; rays a texel: {rays}", case.layout),
         bytes,
         on_disk: Some(captured.file_bytes),
         preparation_s: captured.time.as_secs_f64(),

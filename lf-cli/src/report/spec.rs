@@ -124,6 +124,7 @@ pub(crate) struct Codec {
 }
 
 /// One of the slabs that a [`SlabsSpec`] asks for.
+#[derive(PartialEq)]
 pub(crate) struct SlabsCase {
     /// For people: cameras, texels and where planes are.
     pub(crate) layout: String,
