@@ -49,6 +49,14 @@ impl PlaneBlocks {
     }
 }
 
+/// Which planes of all blocks are mirrors, two bits a block, the first block's lowest: mirrors.wgsl.
+pub(crate) fn mirror_words(cubes: &[PackedCube]) -> Vec<u32> {
+    let blocks = |cube: &PackedCube| cube.inverse_depths().iter().map(|image| image.blocks().len()).sum::<usize>();
+    let marks = cubes.iter().flat_map(|cube| (0..blocks(cube)).map(|block| cube.mirrors(block)));
+    let marks: Vec<u32> = marks.map(|[first, second]| u32::from(first) | u32::from(second) << 1).collect();
+    marks.chunks(16).map(|marks| marks.iter().rev().fold(0, |word, mark| word << 2 | mark)).collect()
+}
+
 fn entries(cubes: &[PackedCube]) -> Vec<CubeEntry> {
     let mut first_block = 0;
     let entry = |cube: &PackedCube| {

@@ -10,7 +10,7 @@ use crate::cube_textures::upload_pictures;
 use crate::error::GpuError;
 use crate::gpu::Gpu;
 use crate::pass::{ReflectionPass, bilinear_sampler, buffer};
-use crate::plane_blocks::{PLANE_BLOCKS, PlaneBlocks};
+use crate::plane_blocks::{PLANE_BLOCKS, PlaneBlocks, mirror_words};
 use crate::shader::Shader;
 use crate::uniforms::SlabsUniform;
 
@@ -77,6 +77,7 @@ impl ReflectionPass {
         let half_extent = data.guide().geometry().cell().half_extent();
         let guided = GuidedUniform { half_extent, reach: data.reach(), far: data.far(), ..GuidedUniform::zeroed() };
         let (slabs, words) = (SlabsUniform::of_guide(data.guide()), guide_words(data.guide()));
+        let mirrors = data.cubes().iter().any(PackedCube::has_mirrors).then(|| mirror_words(data.cubes()));
         gpu.checked("the pipeline of guided cubes", || {
             let slabs = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
             let words = buffer(gpu, "guide", bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE);
@@ -88,7 +89,10 @@ impl ReflectionPass {
                 (8, guided.as_entire_binding()),
             ];
             resources.extend(depths.bindings());
-            Self::new(gpu, Shader::Guided, &resources)
+            let mirrors =
+                mirrors.map(|words| buffer(gpu, "mirrors", bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE));
+            resources.extend(mirrors.iter().map(|words| (9, words.as_entire_binding())));
+            Self::new(gpu, Shader::Guided { mirrors: mirrors.is_some() }, &resources)
         })
     }
 }
@@ -107,9 +111,10 @@ pub(crate) fn probes_source() -> String {
     [PLANE_BLOCKS, &[include_str!("shaders/crossing.wgsl"), include_str!("shaders/probes.wgsl")]].concat().concat()
 }
 
-/// The shader of guided cubes.
-pub(crate) fn guided_source() -> String {
+/// The shader of guided cubes, of which some show mirrors or none do.
+pub(crate) fn guided_source(mirrors: bool) -> String {
+    let answer = if mirrors { include_str!("shaders/mirrors.wgsl") } else { include_str!("shaders/no_mirrors.wgsl") };
     let slabs = [include_str!("shaders/slab_geometry.wgsl"), include_str!("shaders/faces.wgsl")];
-    let guided = [include_str!("shaders/guide.wgsl"), include_str!("shaders/guided.wgsl")];
+    let guided = [include_str!("shaders/guide.wgsl"), include_str!("shaders/guided.wgsl"), answer];
     [PLANE_BLOCKS, &[include_str!("shaders/surface.wgsl")], &slabs, &guided].concat().concat()
 }

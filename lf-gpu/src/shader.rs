@@ -12,7 +12,10 @@ pub(crate) enum Shader {
     Slabs(SlabShader),
     Cube(CubeShader),
     Probes,
-    Guided,
+    Guided {
+        /// Whether any cube shows a mirror.
+        mirrors: bool,
+    },
     /// White, to tell what a frame costs beside its reflections.
     Flat,
 }
@@ -117,7 +120,7 @@ impl Shader {
             Self::Slabs(slabs) => slabs.source(),
             Self::Cube(cube) => cube.source(),
             Self::Probes => probes_source(),
-            Self::Guided => guided_source(),
+            Self::Guided { mirrors } => guided_source(mirrors),
             Self::Flat => include_str!("shaders/flat.wgsl").to_owned(),
         }
     }
@@ -129,6 +132,8 @@ impl Shader {
         match self {
             Self::Slabs(slabs) if slabs.is_linear() => [encode, include_str!("shaders/linear.wgsl")].concat(),
             _ if light => [encode, srgb, include_str!("shaders/srgb_radiance.wgsl")].concat(),
+            // Mirrors on the way take their share of light.
+            Self::Guided { mirrors: true } => [encode, srgb].concat(),
             _ => srgb.to_owned(),
         }
     }

@@ -201,7 +201,11 @@ mod tests {
         }
         validate(Shader::Flat, Part::Mirror(Finish::Bare, Relief::Smooth));
         let cubes = CubeShader::ALL.map(Shader::Cube);
-        for shader in cubes.into_iter().chain([Shader::Probes, Shader::Guided]) {
+        for shader in cubes.into_iter().chain([
+            Shader::Probes,
+            Shader::Guided { mirrors: false },
+            Shader::Guided { mirrors: true },
+        ]) {
             for finish in [Finish::Bare, Finish::Tint, Finish::Fresnel] {
                 validate(shader, Part::Mirror(finish, Relief::Smooth));
             }
@@ -293,7 +297,7 @@ mod tests {
         same_layout!(&module, "March", MarchUniform, near, far, steps, halvings);
         same_layout!(&module, "DistanceCube", CubeEntry, position, size, scales, first_block, padding);
         assert_eq!(reflected(&module, "PlaneBlock").1 as usize, PlaneBlock::BYTES);
-        let module = parsed(&shader_source(Shader::Guided, bare));
+        let module = parsed(&shader_source(Shader::Guided { mirrors: true }, bare));
         same_layout!(&module, "Guided", GuidedUniform, half_extent, reach, far, padding_x, padding_y, padding_z);
     }
 }

@@ -1,7 +1,7 @@
 //! One frame of a reflector.
 
 use glam::{Vec3, Vec4};
-use lf_math::{Image, Ray, linear_from_srgb};
+use lf_math::{Image, Ray, linear_from_srgb, srgb_from_linear};
 use rayon::prelude::*;
 
 use crate::gbuffer::{Fragment, GBuffer};
@@ -28,6 +28,11 @@ pub trait Environment: Sync {
 /// The linear light of an sRGB-encoded colour.
 pub(crate) fn decoded(color: Vec3) -> Vec3 {
     Vec3::from(color.to_array().map(linear_from_srgb))
+}
+
+/// The sRGB-encoded colour of light.
+pub(crate) fn encoded(light: Vec3) -> Vec3 {
+    Vec3::from(light.to_array().map(srgb_from_linear))
 }
 
 /// Colours the pixels of a G-buffer by what they mirror (Eqs. 2 to 6 of the paper), on all threads.

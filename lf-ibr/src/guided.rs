@@ -4,16 +4,18 @@
 //! A few cubes store it sharply, but do not know which of their texels a ray asks for. Here slabs that hold nothing but
 //! inverse depth, and little of that, say where the ray ends to within a bracket ([`guide_ends`]). Within it the ray meets planes that
 //! the cubes show, in closed form; the cubes vote on where it ends; and the texels around that place, of all cubes, are blended
-//! by how near to it on the surface they lie ([`crate::samples`]), for a vector of rays at once.
+//! by how near to it on the surface they lie ([`crate::samples`]), for a vector of rays at once. Rays that end on mirrors go on
+//! ([`crate::mirrors`]).
 
 use fearless_simd::{Level, Simd, dispatch};
 use glam::Vec3;
 use lf_compress::{DepthGuide, GuidedCubes};
 use lf_math::{Ray, normalized};
 
-use crate::frame::Environment;
+use crate::frame::{Environment, decoded, encoded};
 use crate::guide::guide_ends;
 use crate::lanes::{Lanes, MAX_LANES, lanes};
+use crate::mirrors::{MAX_MIRRORS, MIRROR_STEPS, Mirror, START};
 use crate::samples::colors;
 use crate::surface::SurfaceCube;
 
@@ -54,15 +56,27 @@ pub struct GuidedField {
     /// Half of the texels along an edge: those that a tangent of 1 covers.
     texels: f32,
     far: f32,
+    /// Whether any cube shows a mirror.
+    mirrors: bool,
     level: Level,
+}
+
+/// Where a ray ends.
+struct End {
+    /// Cell space.
+    place: Vec3,
+    /// The share of the light there that mirrors on the way leave; none if there are none.
+    reflected: Option<Vec3>,
 }
 
 impl GuidedField {
     /// Reflections from these cubes, found by their guide.
     #[must_use]
     pub fn new(data: &GuidedCubes) -> Self {
+        let cubes: Vec<SurfaceCube> = data.cubes().iter().map(SurfaceCube::new).collect();
         Self {
-            cubes: data.cubes().iter().map(SurfaceCube::new).collect(),
+            mirrors: cubes.iter().any(SurfaceCube::has_mirrors),
+            cubes,
             guide: data.guide().clone(),
             apart: data.reach(),
             texels: 0.5 * data.size() as f32,
@@ -71,18 +85,41 @@ impl GuidedField {
         }
     }
 
-    /// Where a ray ends; none for one without a direction or an origin.
-    fn place(&self, ray: &Ray) -> Option<Vec3> {
+    /// Where a ray ends, over mirrors; none for one without a direction or an origin.
+    #[inline(always)]
+    fn end(&self, ray: &Ray) -> Option<End> {
         let ray = Ray { origin: ray.origin, direction: normalized(ray.direction)? };
-        ray.origin.is_finite().then(|| self.end(&ray))
+        let place = ray.origin.is_finite().then(|| self.first_end(&ray))?;
+        Some(if self.mirrors { self.over_mirrors(&ray, place) } else { End { place, reflected: None } })
     }
 
-    /// Where a ray of unit direction ends, cell space.
-    fn end(&self, ray: &Ray) -> Vec3 {
+    /// Where a ray that first ends at a place ends over mirrors.
+    fn over_mirrors(&self, ray: &Ray, mut place: Vec3) -> End {
+        let (mut direction, mut reflected) = (ray.direction, None);
+        for _ in 0..MAX_MIRRORS {
+            let Some(mirror) = Mirror::at(place, &self.cubes, SEEN) else { break };
+            let Some(ray) = mirror.reflected(place, direction) else { break };
+            reflected = Some(reflected.unwrap_or(Vec3::ONE) * mirror.reflectance);
+            direction = ray.direction;
+            place = self.end_beyond(&ray);
+        }
+        End { place, reflected }
+    }
+
+    /// Where a ray that starts at a mirror ends.
+    fn end_beyond(&self, ray: &Ray) -> Vec3 {
+        let distance = (ray.origin - self.cubes[0].position()).length();
+        let span = [START * distance, self.far.max(distance)];
+        let mut search = Search { field: self, ray, seeing: 0, ahead: distance };
+        ray.at(search.steps(span, MIRROR_STEPS).unwrap_or(span[1]))
+    }
+
+    /// Where a ray of unit direction first ends, cell space.
+    fn first_end(&self, ray: &Ray) -> Vec3 {
         let cell = self.guide.geometry().cell();
         let leave = cell.exit(ray).unwrap_or(0.0).max(1e-3 * cell.half_extent().min_element());
         let far = self.far.max(2.0 * leave);
-        let mut search = Search { field: self, ray, seeing: 0 };
+        let mut search = Search { field: self, ray, seeing: 0, ahead: 0.0 };
         let mut from = leave;
         if let Some([near, end]) = guide_ends(&self.guide, ray) {
             let margin = |t: f32| MARGIN * (t + leave);
@@ -106,6 +143,8 @@ struct Search<'a> {
     ray: &'a Ray,
     /// The cube that saw past the last point.
     seeing: usize,
+    /// How far from the cubes the ray starts, about, if not among them.
+    ahead: f32,
 }
 
 impl Search<'_> {
@@ -138,13 +177,14 @@ impl Search<'_> {
         self.steps([near, far], (parallax * self.field.texels / STEP_TEXELS).ceil().clamp(STEPS[0], STEPS[1]) as u32)
     }
 
-    /// Steps even in the inverse, as the pictures are (Umenhoffer, Patow & Szirmay-Kalos 2007).
+    /// Steps even in the inverse of the distance from the cubes, as the pictures are (Umenhoffer, Patow & Szirmay-Kalos 2007).
     fn steps(&mut self, [near, far]: [f32; 2], count: u32) -> Option<f32> {
-        let step = (near.recip() - far.recip()) / count as f32;
+        let [first, end] = [near, far].map(|t| (t + self.ahead).recip());
+        let step = (first - end) / count as f32;
         let mut last = near;
         for i in 1..=count {
             // The last of many small steps may round to beyond infinity.
-            let next = (near.recip() - i as f32 * step).max(far.recip()).recip();
+            let next = (first - i as f32 * step).max(end).recip() - self.ahead;
             if !self.is_free(next)
                 && let Some(found) = self.agreed([last, next])
             {
@@ -225,14 +265,17 @@ fn look_up<S: Simd>(simd: S, field: &GuidedField, rays: &[Ray], answers: &mut [O
     for (rays, answers) in rays.chunks(lanes::<S>()).zip(answers.chunks_mut(lanes::<S>())) {
         // What is not a number has no colour.
         let mut places: [Lanes<f32>; 3] = [[f32::NAN; MAX_LANES]; 3];
+        let mut reflected: [Option<Vec3>; MAX_LANES] = [None; MAX_LANES];
         for (lane, ray) in rays.iter().enumerate() {
-            if let Some(end) = field.place(ray) {
-                [places[0][lane], places[1][lane], places[2][lane]] = end.to_array();
+            if let Some(end) = field.end(ray) {
+                [places[0][lane], places[1][lane], places[2][lane]] = end.place.to_array();
+                reflected[lane] = end.reflected;
             }
         }
         let (colors, known) = colors(simd, &field.cubes, &places, field.far);
         for (lane, answer) in answers.iter_mut().enumerate() {
             let color = Vec3::new(colors[0][lane], colors[1][lane], colors[2][lane]);
+            let color = reflected[lane].map_or(color, |share| encoded(share * decoded(color)));
             *answer = (known >> lane & 1 == 1).then_some(color);
         }
     }

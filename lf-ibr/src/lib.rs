@@ -33,6 +33,7 @@ mod guided;
 mod holdout;
 mod lanes;
 mod march;
+mod mirrors;
 mod palette;
 mod proxy;
 mod samples;

@@ -7,6 +7,7 @@
 use std::cmp::Ordering;
 
 use fearless_simd::prelude::*;
+use glam::Vec3;
 
 use crate::lanes::{F, I, Pairs, Shorts, U};
 
@@ -98,4 +99,44 @@ pub(crate) fn recode([ends, indices]: Block) -> Block {
 /// Whether a recoded block has two endpoints, what is half way between them, and black.
 pub(crate) fn has_three_colors(&[ends, _]: &Block) -> bool {
     ends & 0xffff < ends >> 16
+}
+
+/// The colour, 0 … 1, of a recoded block's texel, numbered row by row.
+pub(crate) fn color(block: &Block, texel: u32) -> Vec3 {
+    let [ends, codes] = *block;
+    let code = codes >> (2 * texel) & 3;
+    let parts = if has_three_colors(block) { 2 } else { 3 };
+    if code > parts {
+        return Vec3::ZERO;
+    }
+    let channel = |shift: u32, bits: u32| {
+        let wide = |end: u32| {
+            let level = (end >> shift & ((1 << bits) - 1)) << (8 - bits);
+            level | level >> bits
+        };
+        ((parts - code) * wide(ends) + code * wide(ends >> 16)) / parts
+    };
+    Vec3::new(channel(11, 5) as f32, channel(5, 6) as f32, channel(0, 5) as f32) / 255.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lf_compress::bc1::decode_texel_f32;
+
+    /// Blocks of every kind: four colours, three, equal endpoints; and all indices.
+    #[test]
+    fn texels_are_those_of_the_codec() {
+        for i in 0..4096u32 {
+            let hash = i.wrapping_mul(0x9E37_79B9).wrapping_mul(i | 1);
+            let ends = if i % 3 == 0 { (hash & 0xffff) * 0x1_0001 } else { hash };
+            let indices = if i % 2 == 0 { hash.rotate_left(13) } else { hash & 0x5555_5555 };
+            let bytes = (u64::from(ends) | u64::from(indices) << 32).to_le_bytes();
+            for texel in 0..16 {
+                let [r, g, b, _] = decode_texel_f32(&bytes, texel as usize % 4, texel as usize / 4);
+                let apart = (color(&words(&bytes), texel) - Vec3::new(r, g, b)).abs().max_element();
+                assert!(apart < 1e-6, "{ends:x} {indices:x} {texel}");
+            }
+        }
+    }
 }

@@ -6,11 +6,10 @@
 use glam::Vec3;
 use lf_math::{
     GeometryError, Image, LitMesh, NormalMap, Pinhole, Placement, Reflectance, TriangleMesh, length, near_plane,
-    srgb_from_linear,
 };
 use rayon::prelude::*;
 
-use crate::frame::{Environment, encode};
+use crate::frame::{Environment, encode, encoded};
 use crate::gbuffer::{Fragment, GBuffer, LitBuffer};
 
 /// A mirror in a frame.
@@ -70,7 +69,7 @@ pub fn draw_frame(
     pixels.enumerate().for_each(|(index, (pixel, fragment))| {
         let light = scene.as_ref().and_then(|scene| scene.before(index, gbuffer.inverse_depth(index)));
         let color = match (light, fragment, behind) {
-            (Some(light), ..) => Some(displayed(light)),
+            (Some(light), ..) => Some(encoded(light)),
             (None, Some(fragment), _) => {
                 mirrored(fragment, camera.eye(), &reflectors[fragment.mesh as usize], environment)
             }
@@ -92,11 +91,6 @@ fn drawn(scene: &LitMesh, mirrors: &[TriangleMesh], camera: &Pinhole) -> LitBuff
     LitBuffer::rasterize(scene, camera, near)
 }
 
-/// The sRGB-encoded colour of light.
-fn displayed(light: Vec3) -> Vec3 {
-    Vec3::from(light.to_array().map(srgb_from_linear))
-}
-
 /// The sRGB-encoded colour that a surface shows (Eqs. 2 to 6 of the paper).
 fn mirrored(
     fragment: &Fragment,
@@ -110,7 +104,7 @@ fn mirrored(
         return environment.look_up(&ray);
     }
     let shares = mirror.reflectance.at(ray.direction.dot(normal) / length(ray.direction));
-    Some(displayed(shares * environment.radiance(&ray)?))
+    Some(encoded(shares * environment.radiance(&ray)?))
 }
 
 #[cfg(test)]
@@ -126,7 +120,7 @@ mod tests {
 
     impl Environment for Sky {
         fn look_up(&self, ray: &Ray) -> Option<Vec3> {
-            self.radiance(ray).map(displayed)
+            self.radiance(ray).map(encoded)
         }
 
         fn radiance(&self, ray: &Ray) -> Option<Vec3> {

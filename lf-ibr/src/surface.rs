@@ -9,7 +9,7 @@ use lf_compress::bc1::BLOCK_BYTES;
 use lf_compress::planes::{BLOCK_EDGE, PlaneImage};
 use lf_math::{CubeCoord, Face, Ray, cube_direction};
 
-use crate::palette::{Block, has_three_colors, words};
+use crate::palette::{self, Block, has_three_colors, words};
 
 /// A ray along which the depth relative to a plane's changes by less than this a metre is taken to be parallel to it: they would meet beyond
 /// any scene, and quotients stay finite, as shaders must have them.
@@ -37,6 +37,8 @@ pub(crate) struct SurfaceCube {
     colors: Vec<Block>,
     /// Whether any block of the picture has three colours.
     three: bool,
+    /// Which of each block's planes are mirrors; empty if none is.
+    mirrors: Vec<[bool; 2]>,
 }
 
 /// Where a direction leads: a face and coordinates on it, in texels from its corner.
@@ -51,13 +53,16 @@ impl SurfaceCube {
         let (size, depths) = (cube.size(), cube.inverse_depths());
         let colors = cube.radiance().iter().flat_map(|face| face.as_chunks::<BLOCK_BYTES>().0);
         let colors: Vec<Block> = colors.map(words).collect();
+        let blocks: Vec<_> = Face::ALL.into_iter().zip(depths).flat_map(|(face, image)| blocks(face, image)).collect();
+        let marked = if cube.has_mirrors() { blocks.len() } else { 0 };
         Self {
             position: cube.position(),
             size,
             across: size.div_ceil(BLOCK_EDGE as u32),
-            blocks: Face::ALL.into_iter().zip(depths).flat_map(|(face, image)| blocks(face, image)).collect(),
+            blocks,
             three: colors.iter().any(has_three_colors),
             colors,
+            mirrors: (0..marked).map(|block| cube.mirrors(block)).collect(),
         }
     }
 
@@ -115,12 +120,66 @@ impl SurfaceCube {
         self.colors.get(number).copied().unwrap_or_default()
     }
 
+    /// The face and the texel that a direction leads to.
+    #[inline(always)]
+    fn nearest(&self, away: Vec3) -> (u32, [u32; 2]) {
+        let Spot { face, at } = self.spot(away);
+        (face, at.to_array().map(|at| (at as u32).min(self.size - 1)))
+    }
+
     /// The plane seen in the direction of a place.
     #[inline(always)]
     fn nearest_plane(&self, away: Vec3) -> Vec3 {
-        let Spot { face, at } = self.spot(away);
-        let texel = at.to_array().map(|at| (at as u32).min(self.size - 1));
+        let (face, texel) = self.nearest(away);
         self.plane_of(self.block(face, texel), bit(texel))
+    }
+
+    /// Whether any plane is a mirror.
+    pub(crate) fn has_mirrors(&self) -> bool {
+        !self.mirrors.is_empty()
+    }
+
+    /// Whether the texel in the direction of a place shows a mirror.
+    pub(crate) fn is_mirror(&self, place: Vec3) -> bool {
+        let (face, texel) = self.nearest(place - self.position);
+        let block = self.block(face, texel);
+        let marks = self.mirrors.get(block).zip(self.blocks.get(block));
+        marks.is_some_and(|(marks, block)| marks[(block.mask >> bit(texel) & 1) as usize])
+    }
+
+    /// The colour of the texel in the direction of a place, 0 … 1.
+    pub(crate) fn nearest_color(&self, place: Vec3) -> Vec3 {
+        let (face, [x, y]) = self.nearest(place - self.position);
+        let across = self.size.div_ceil(4);
+        palette::color(&self.color_block(((face * across + y / 4) * across + x / 4) as usize), 4 * (y % 4) + x % 4)
+    }
+
+    /// The normal of a mirror at a place: the normals of the four blocks around, those of their planes that are mirrors and pass the place within a
+    /// share of its depth, blended by how near to the blocks' middles it is, and longer the more squarely it is seen.
+    pub(crate) fn mirror_normal(&self, place: Vec3, same: f32) -> Vec3 {
+        let away = place - self.position;
+        let Spot { face, at } = self.spot(away);
+        let among = at / EDGE as f32 - 0.5;
+        let (low, distance) = (among.floor(), away.length());
+        let mut sum = Vec3::ZERO;
+        for corner in [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE] {
+            let block = low + corner;
+            if block.min_element() < 0.0 || block.max_element() >= self.across as f32 {
+                continue;
+            }
+            let number = ((face * self.across + block.y as u32) * self.across + block.x as u32) as usize;
+            let share = Vec2::ONE - (among - block).abs();
+            let marks = self.mirrors.get(number).zip(self.blocks.get(number));
+            for (plane, is_mirror) in marks.into_iter().flat_map(|(marks, block)| block.planes.into_iter().zip(*marks))
+            {
+                if is_mirror && (plane.dot(away) - 1.0).abs() < same {
+                    // The plane's vector is as long as the inverse of its distance, and leads away.
+                    let cosine = (plane.length() * distance).recip();
+                    sum -= share.x * share.y * cosine * cosine * plane.normalize();
+                }
+            }
+        }
+        sum
     }
 
     /// How deep a place of cell space is, as a multiple of what the nearest texel shows: less than 1 in front of it.

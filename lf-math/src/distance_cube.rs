@@ -13,11 +13,14 @@ use crate::{CubeCoord, CubeMap, Face, GeometryError, Image, cube_coord, cube_dir
 /// Kept is the inverse of the depth along the axis of the face, 1/m: in a face's image that is an affine function of the place
 /// wherever a plane is seen, and no division is needed to tell whether something lies in front of it. 0 is infinitely far. The faces
 /// of depths may have another size than the picture's.
+///
+/// Texels may be marked as mirrors ([`Self::with_mirrors`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistanceCube {
     position: Vec3,
     radiance: CubeMap,
     inverse_depths: [Image<f32>; 6],
+    mirrors: Option<[Image<bool>; 6]>,
 }
 
 /// How the end of a ray is looked for in a distance cube.
@@ -57,7 +60,30 @@ impl DistanceCube {
                 }
             }
         }
-        Ok(Self { position, radiance, inverse_depths })
+        Ok(Self { position, radiance, inverse_depths, mirrors: None })
+    }
+
+    /// The same with texels that show perfect mirrors, by face. Their colours in the picture are what those reflect of the light that
+    /// they get, not the light that comes from them: that depends on where it goes.
+    ///
+    /// # Errors
+    /// Faces must be of the size of the depths'.
+    pub fn with_mirrors(mut self, mirrors: [Image<bool>; 6]) -> Result<Self, GeometryError> {
+        let want = [self.depth_size(); 2];
+        for face in &mirrors {
+            let have = [face.width(), face.height()];
+            if have != want {
+                return Err(GeometryError::Size { what: "face of mirrors", have, want });
+            }
+        }
+        self.mirrors = Some(mirrors);
+        Ok(self)
+    }
+
+    /// The texels that show mirrors, by face, if they were told.
+    #[must_use]
+    pub fn mirrors(&self) -> Option<&[Image<bool>; 6]> {
+        self.mirrors.as_ref()
     }
 
     /// Where it was taken, cell space.
@@ -264,5 +290,8 @@ mod tests {
         let mut uneven = faces(1.0);
         uneven[3] = Image::filled(2, 3, 1.0);
         assert!(DistanceCube::new(Vec3::ZERO, black(), uneven).is_err());
+        let mirrors = |size: u32| far.clone().with_mirrors(Face::ALL.map(|_| Image::filled(size, size, true)));
+        assert!(mirrors(3).is_err());
+        assert!(mirrors(2).unwrap().mirrors().unwrap()[4].get(1, 1));
     }
 }

@@ -75,6 +75,43 @@ pub fn capture_distance_cube(
     DistanceCube::new(point, radiance, [a?, b?, c?, d?, e?, f?])
 }
 
+/// The same, of one size, with perfect mirrors as such ([`DistanceCube::with_mirrors`]): what the middle ray of each texel meets counts. In a
+/// scene without mirrors it is [`capture_distance_cube`].
+///
+/// # Errors
+/// As there.
+pub fn capture_mirror_cube(
+    tracer: &Tracer,
+    cell: &Cell,
+    point: Vec3,
+    size: u32,
+    grid: u32,
+) -> Result<DistanceCube, GeometryError> {
+    let cube = capture_distance_cube(tracer, cell, point, [size; 2], grid)?;
+    if !tracer.has_mirrors() {
+        return Ok(cube);
+    }
+    let world = cell.world_from_cell(point).as_vec3();
+    let of_face = |face: Face| {
+        let reflectance = |index: u32| {
+            let middle = Vec2::new((index % size) as f32, (index / size) as f32) + 0.5;
+            tracer.mirror(world, cube_direction(CubeCoord { face, uv: middle / size as f32 }))
+        };
+        (0..size * size).into_par_iter().map(reflectance).collect::<Vec<_>>()
+    };
+    let mirrors = Face::ALL.map(of_face);
+    let mut faces = cube.radiance().faces().clone();
+    for (face, mirrors) in faces.iter_mut().zip(&mirrors) {
+        for (texel, mirror) in face.texels_mut().iter_mut().zip(mirrors) {
+            *texel = mirror.map_or(*texel, opaque);
+        }
+    }
+    let marks = mirrors.map(|face| Image::new(size, size, face.iter().map(Option::is_some).collect()));
+    let [a, b, c, d, e, f] = marks;
+    DistanceCube::new(point, CubeMap::new(faces)?, cube.inverse_depths().clone())?
+        .with_mirrors([a?, b?, c?, d?, e?, f?])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,5 +178,41 @@ mod tests {
             assert!(cube.faces()[usize::from(face.index())].texels().iter().all(|texel| *texel == expected));
         }
         assert!(capture_cube(&room(), &cell, 0, 1).is_err());
+    }
+
+    /// Closed form: which rays meet a cuboid first.
+    #[test]
+    fn texels_of_mirrors_hold_what_those_reflect() {
+        let color = Vec3::new(0.9, 0.5, 0.2);
+        let (low, high) = (Vec3::new(1.0, -1.0, 0.5), Vec3::new(2.0, 1.5, 1.5));
+        let mut builder = SceneBuilder::default();
+        let (mirror, wall) =
+            (builder.material(Material::mirror(color)), builder.material(Material::glowing(Vec3::splat(0.25))));
+        builder.cuboid(low, high, mirror);
+        builder.parallelogram(Vec3::new(-9.0, -9.0, 4.0), Vec3::X * 18.0, Vec3::Y * 18.0, Vec2::ONE, wall);
+        let tracer = Tracer::new(builder.build("mirror", Lighting::from_environment(Environment::BLACK)).unwrap());
+        let (cell, size) = (Cell::cube(DVec3::ZERO, 1.0).unwrap(), 40);
+        let point = Vec3::new(0.1, 0.2, -0.3);
+        let cube = capture_mirror_cube(&tracer, &cell, point, size, 2).unwrap();
+        let plain = capture_distance_cube(&tracer, &cell, point, [size; 2], 2).unwrap();
+        assert_eq!(cube.inverse_depths(), plain.inverse_depths());
+        let mut met = 0;
+        for (number, face) in Face::ALL.into_iter().enumerate() {
+            for (x, y) in (0..size * size).map(|i| (i % size, i / size)) {
+                let uv = (Vec2::new(x as f32, y as f32) + 0.5) / size as f32;
+                let direction = cube_direction(CubeCoord { face, uv });
+                let (a, b) = ((low - point) / direction, (high - point) / direction);
+                let enters = a.min(b).max_element();
+                let expected = enters > 0.0 && enters < a.max(b).min_element();
+                met += u32::from(expected);
+                assert_eq!(cube.mirrors().unwrap()[number].get(x, y), expected, "{face:?} {x} {y}");
+                let texel = cube.radiance().faces()[number].get(x, y);
+                let other = plain.radiance().faces()[number].get(x, y);
+                assert_eq!(texel, if expected { opaque(color) } else { other });
+            }
+        }
+        assert!(met > 100, "{met}");
+        // Without mirrors there is nothing to mark.
+        assert_eq!(capture_mirror_cube(&room(), &cell, point, 4, 1).unwrap().mirrors(), None);
     }
 }

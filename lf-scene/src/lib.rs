@@ -54,7 +54,7 @@ mod tracer;
 mod view;
 
 pub use capture::{Capture, TexelSampler, capture_inverse_depths, capture_slabs};
-pub use cube::{capture_cube, capture_distance_cube, trace_cube};
+pub use cube::{capture_cube, capture_distance_cube, capture_mirror_cube, trace_cube};
 pub use embedded::{EMBEDDED, EmbeddedScene, beside, corridor, forest, mirror_box, museum};
 pub use environment::{Environment, EnvironmentMap};
 pub use error::{ImportError, SceneError};

@@ -94,6 +94,21 @@ impl Tracer {
         self.nearest(origin, direction, None).map(|hit| hit.t)
     }
 
+    /// Whether anything is a perfect mirror, glass and smooth metal apart.
+    #[must_use]
+    pub fn has_mirrors(&self) -> bool {
+        self.scene.materials().iter().any(|material| matches!(material.scattering, Scattering::Mirror))
+    }
+
+    /// The colour of the perfect mirror that a ray meets first, the share of light that it reflects; `None` if it meets something else.
+    #[must_use]
+    pub fn mirror(&self, origin: Vec3, direction: Vec3) -> Option<Vec3> {
+        let hit = self.nearest(origin, direction, None)?;
+        let material = self.scene.material(hit.triangle);
+        let uv = uv_on(&self.scene.triangles()[hit.triangle].0, hit.shares);
+        matches!(material.scattering, Scattering::Mirror).then(|| material.base.color(uv))
+    }
+
     /// Radiance along a ray: the mean of all samples.
     #[must_use]
     pub fn trace(&self, origin: Vec3, direction: Vec3) -> Traced {

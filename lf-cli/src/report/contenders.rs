@@ -17,7 +17,7 @@ use lf_ibr::{
     BlockField, BoxCube, CubeField, DistanceField, Environment, GuidedField, ProbeField, SlabField, SphereCube,
 };
 use lf_math::{Coverage, DistanceCube, LightFieldGeometry, PlanePlacement, Search, Slab};
-use lf_scene::{capture_distance_cube, capture_inverse_depths, focus};
+use lf_scene::{capture_distance_cube, capture_inverse_depths, capture_mirror_cube, focus};
 
 use super::spec::{Answer, CubeSpec, GuidedSpec, Method, ProbesSpec, SlabsCase};
 use crate::args::FileArgs;
@@ -195,7 +195,8 @@ fn probes_of(source: &Source, megabytes: f64, steps: &[u32], gpu: Option<&Gpu>, 
     let places = (0..8).map(|i| PROBES_AT * corner(i) * source.cell.half_extent());
     // From this many bytes on one ray a texel is traced, not four: that would take minutes.
     let grid = if megabytes > 20.0 { 1 } else { 2 };
-    let set = CubeSet::capture(source, &places.collect::<Vec<_>>(), megabytes * 1e6, grid)?;
+    let of = |place, size| capture(source, place, size, grid);
+    let set = CubeSet::of(&places.collect::<Vec<_>>(), megabytes * 1e6, grid, of)?;
     let cubes = set.decode()?;
     let mut hand = |texels, steps, bytes, drawn: Drawn<'_>| {
         let (size, grid) = (set.size, set.rays);
@@ -236,7 +237,11 @@ fn guided_of(source: &Source, megabytes: f64, gpu: Option<&Gpu>, each: &mut Each
     let corners = [[0.0; 3], [1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     let places = corners.map(|corner| GUIDED_AT * Vec3::from(corner) * source.cell.half_extent());
     let guide_bytes = guide.bytes() as u64;
-    let set = CubeSet::capture(source, &places, megabytes * 1e6 - guide_bytes as f64, GUIDED_GRID)?;
+    let of = |place, size| {
+        let cube = capture_mirror_cube(&source.tracer, &source.cell, place, size, GUIDED_GRID)?;
+        Ok(PackedCube::encode(&cube, Quality::Best)?)
+    };
+    let set = CubeSet::of(&places, megabytes * 1e6 - guide_bytes as f64, GUIDED_GRID, of)?;
     let (size, grid, preparation_s) = (set.size, set.rays, guide_s + set.preparation_s);
     let rays = set.traced() + guide_bytes / 2;
     let data = GuidedCubes::new(set.cubes, guide)?;
@@ -339,9 +344,10 @@ struct CubeSet {
 }
 
 impl CubeSet {
-    fn capture(source: &Source, places: &[Vec3], bytes: f64, grid: u32) -> Result<Self> {
+    /// At some places, each as a function of place and size makes it, with so many rays a texel and axis.
+    fn of(places: &[Vec3], bytes: f64, grid: u32, cube: impl Fn(Vec3, u32) -> Result<PackedCube>) -> Result<Self> {
         let (start, size) = (Instant::now(), cube_size(bytes / places.len() as f64));
-        let cubes = places.iter().map(|&place| capture(source, place, size, grid)).collect::<Result<Vec<_>>>()?;
+        let cubes = places.iter().map(|&place| cube(place, size)).collect::<Result<Vec<_>>>()?;
         let bytes = cubes.iter().map(|cube| cube.bytes() as u64).sum();
         Ok(Self { cubes, size, rays: grid * grid, bytes, preparation_s: start.elapsed().as_secs_f64() })
     }

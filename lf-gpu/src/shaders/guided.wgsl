@@ -1,5 +1,5 @@
 // A few sharp distance cubes, and a guide that says where in them a ray ends. CPU twin: lf-ibr/src/guided.rs, with what its constants mean.
-// Cubes come from surface.wgsl, the guide from guide.wgsl.
+// Cubes come from surface.wgsl, the guide from guide.wgsl; `look_up` from mirrors.wgsl or no_mirrors.wgsl.
 
 // Mirrors `GuidedUniform` in several_cubes.rs.
 struct Guided {
@@ -21,6 +21,8 @@ struct Search {
     direction: vec3f,
     // The cube that saw past the last point.
     seeing: u32,
+    // How far from the cubes the ray starts, about, if not among them.
+    ahead: f32,
 }
 
 // What cubes say of a place.
@@ -47,11 +49,6 @@ const SEEN = 0.01;
 const ALONE = 0.02;
 const DISCORD = ALONE + 5e-3;
 const NOT_FOUND = -1.0;
-
-fn look_up(origin: vec3f, direction: vec3f) -> vec3f {
-    var search = Search(origin, normalize(direction), 0u);
-    return color(place_at(&search, end(&search)));
-}
 
 fn place_at(search: ptr<function, Search>, t: f32) -> vec3f {
     return (*search).origin + t * (*search).direction;
@@ -128,12 +125,15 @@ fn within(search: ptr<function, Search>, near: f32, far: f32) -> f32 {
     return steps(search, near, far, u32(clamp(count, LEAST_STEPS, MOST_STEPS)));
 }
 
-// Steps even in the inverse, as the pictures are (Umenhoffer, Patow & Szirmay-Kalos 2007).
+// Steps even in the inverse of the distance from the cubes, as the pictures are (Umenhoffer, Patow & Szirmay-Kalos 2007).
 fn steps(search: ptr<function, Search>, near: f32, far: f32, count: u32) -> f32 {
-    let step = (1.0 / near - 1.0 / far) / f32(count);
+    let ahead = (*search).ahead;
+    let first = 1.0 / (near + ahead);
+    let end = 1.0 / (far + ahead);
+    let step = (first - end) / f32(count);
     var last = near;
     for (var i = 1u; i <= count; i++) {
-        let next = 1.0 / max(1.0 / near - f32(i) * step, 1.0 / far);
+        let next = 1.0 / max(first - f32(i) * step, end) - ahead;
         if !is_free(search, next) {
             let found = agreed(search, last, next);
             if found != NOT_FOUND {

@@ -38,17 +38,26 @@ fn face_blocks(cube: u32, face: u32) -> FaceBlocks {
     return FaceBlocks(cubes[cube].first_block + face * across * across, across, cubes[cube].scales[face]);
 }
 
-// The function that a texel is on: its value in the middle of the texel's block, what it grows by along x and along y.
-fn held(face: FaceBlocks, texel: vec2u) -> vec3f {
+// Whether a texel is on the second plane of its block.
+fn is_on_second(face: FaceBlocks, texel: vec2u) -> bool {
     let place = texel / BLOCK_EDGE;
-    let block = face.first + place.y * face.across + place.x;
     let inside = texel % BLOCK_EDGE;
     let bit = BLOCK_EDGE * inside.y + inside.x;
-    // Three words of the five are read.
-    let is_second = (blocks[block].masks[bit / 32u] >> (bit % 32u) & 1u) == 1u;
+    return (blocks[face.first + place.y * face.across + place.x].masks[bit / 32u] >> (bit % 32u) & 1u) == 1u;
+}
+
+// A function of a block: its value in the middle of the block, what it grows by along x and along y.
+fn plane_of(face: FaceBlocks, place: vec2u, is_second: bool) -> vec3f {
+    let block = face.first + place.y * face.across + place.x;
+    // Two words of the three are read.
     let both = unpack2x16float(blocks[block].halves[1]);
     let own = unpack2x16float(blocks[block].halves[select(0u, 2u, is_second)]);
     return face.scale * select(vec3f(own, both.x), vec3f(both.y, own), is_second);
+}
+
+// The function that a texel is on.
+fn held(face: FaceBlocks, texel: vec2u) -> vec3f {
+    return plane_of(face, texel / BLOCK_EDGE, is_on_second(face, texel));
 }
 
 // The inverse depth in the middle of a texel.

@@ -8,13 +8,17 @@ const PARALLEL = 1e-20;
 // Shaders have no infinity; scenes end far before this.
 const INFINITE = 1e30;
 
-// The plane that a texel shows, along its face's right, down and forward: its dot product with a place is the place's depth relative to
+// The function of a block as a plane, along its face's right, down and forward: its dot product with a place is the place's depth relative to
 // the plane's.
-fn plane_at(face: FaceBlocks, size: u32, texel: vec2u) -> vec3f {
-    let plane = held(face, texel);
+fn scene_plane(plane: vec3f, block: vec2u, size: u32) -> vec3f {
     let half_size = 0.5 * f32(size);
-    let to_centre = half_size - 0.5 * f32(BLOCK_EDGE) - vec2f(texel / BLOCK_EDGE * BLOCK_EDGE);
+    let to_centre = half_size - 0.5 * f32(BLOCK_EDGE) - vec2f(block * BLOCK_EDGE);
     return vec3f(half_size * plane.yz, plane.x + dot(to_centre, plane.yz));
+}
+
+// The plane that a texel shows.
+fn plane_at(face: FaceBlocks, size: u32, texel: vec2u) -> vec3f {
+    return scene_plane(held(face, texel), texel / BLOCK_EDGE, size);
 }
 
 fn nearest_plane(cube: u32, spot: Spot) -> vec3f {
