@@ -13,6 +13,10 @@ use crate::pass::{ReflectionPass, bilinear_sampler, buffer};
 use crate::plane_blocks::{PLANE_BLOCKS, PlaneBlocks};
 use crate::shader::Shader;
 use crate::uniforms::SlabsUniform;
+use crate::upload::large_buffer;
+
+/// Name of the guide in errors.
+const GUIDE: &str = "the guide of distance cubes";
 
 /// `March` of probes.wgsl.
 #[repr(C)]
@@ -77,9 +81,10 @@ impl ReflectionPass {
         let half_extent = data.guide().geometry().cell().half_extent();
         let guided = GuidedUniform { half_extent, reach: data.reach(), far: data.far(), ..GuidedUniform::zeroed() };
         let (slabs, words) = (SlabsUniform::of_guide(data.guide()), guide_words(data.guide()));
+        gpu.affords(GUIDE, 4 * words.len() as u64)?;
+        let words = large_buffer(gpu, GUIDE, bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE)?;
         gpu.checked("the pipeline of guided cubes", || {
             let slabs = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
-            let words = buffer(gpu, "guide", bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE);
             let guided = buffer(gpu, "guided", bytemuck::bytes_of(&guided), wgpu::BufferUsages::UNIFORM);
             let mut resources = vec![
                 (1, slabs.as_entire_binding()),
