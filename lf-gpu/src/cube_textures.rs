@@ -3,11 +3,12 @@
 use half::f16;
 use lf_compress::{PackedCube, bc1};
 use lf_math::{CubeMap, Image};
-use wgpu::util::DeviceExt;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
 use crate::plane_blocks::PlaneBlocks;
+use crate::storage::slice_bytes;
+use crate::upload::write_image;
 
 /// The pictures of a cube map, as they go to the device.
 #[derive(Debug, Clone, Copy)]
@@ -148,7 +149,7 @@ impl CubeDepths<'_> {
 
 impl Faces<'_> {
     fn upload(&self, gpu: &Gpu) -> Result<wgpu::TextureView, GpuError> {
-        gpu.affords(self.what.to_owned(), self.bytes.len() as u64)?;
+        gpu.affords(self.what, self.bytes.len() as u64)?;
         let descriptor = wgpu::TextureDescriptor {
             label: Some(self.what),
             size: wgpu::Extent3d { width: self.size, height: self.size, depth_or_array_layers: self.count },
@@ -160,9 +161,12 @@ impl Faces<'_> {
             view_formats: &[],
         };
         let view = wgpu::TextureViewDescriptor { dimension: Some(self.dimension), ..Default::default() };
-        let order = wgpu::util::TextureDataOrder::LayerMajor;
-        gpu.checked(self.what, || {
-            gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, self.bytes).create_view(&view)
-        })
+        let texture = gpu.checked(self.what, || gpu.device.create_texture(&descriptor))?;
+        let size = [self.size; 2];
+        let faces = self.bytes.chunks(slice_bytes(self.format, size) as usize);
+        for (layer, face) in (0..).zip(faces) {
+            write_image(gpu, self.what, &texture, [0, 0, layer], size, face)?;
+        }
+        gpu.checked(self.what, || texture.create_view(&view))
     }
 }

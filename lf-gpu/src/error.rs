@@ -24,13 +24,13 @@ pub enum GpuError {
         /// What is missing, and what to do.
         why: String,
     },
-    /// A texture would take more than [`DeviceOptions::max_texture_bytes`](crate::DeviceOptions::max_texture_bytes).
+    /// A texture, or a buffer in place of one, would take more than [`DeviceOptions::max_texture_bytes`](crate::DeviceOptions::max_texture_bytes).
     #[error(
-        "{what} takes {bytes} bytes, more than the budget of {budget}: crop the light field, capture fewer cameras or texels, or \
-         allow more (max_texture_bytes)"
+        "{what} takes {bytes} bytes, more than the budget of {budget}: crop the light field, capture fewer cameras or texels, keep \
+         BC1 blocks where the device samples them, draw fewer pixels, or allow more (max_texture_bytes)"
     )]
     OverBudget {
-        /// The texture.
+        /// The texture or buffer.
         what: String,
         /// Bytes that it takes on the device.
         bytes: u64,
@@ -39,15 +39,22 @@ pub enum GpuError {
     },
     /// The device has no memory left.
     #[error(
-        "the GPU is out of memory for {what}; close other programs that use it, or ask for less (max_texture_bytes)"
+        "the GPU is out of memory for {what}; close other programs that use it, or ask for fewer cameras, texels or \
+         pixels"
     )]
     OutOfMemory {
         /// What was asked.
         what: &'static str,
     },
-    /// The device is gone with everything on it: its driver was reset, it was unplugged, or it was given back.
-    #[error("the GPU device was lost; open it again, or draw on the CPU")]
-    Lost,
+    /// The device is gone with everything on it: its driver was reset or had no memory for what it keeps itself, it was unplugged, or it
+    /// was given back.
+    #[error("the GPU device {device} was lost ({why}); open it again, or draw on the CPU")]
+    Lost {
+        /// Name and API of its adapter.
+        device: String,
+        /// What the driver says.
+        why: String,
+    },
     /// The device refused a resource or a command.
     #[error("the GPU refused {what}: {why}")]
     Refused {

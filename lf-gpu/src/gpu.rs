@@ -1,7 +1,6 @@
 //! The device.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use crate::error::GpuError;
 
@@ -21,8 +20,8 @@ pub struct DeviceOptions {
     pub max_texture_dimension_3d: u32,
     /// Layers of an array texture.
     pub max_texture_array_layers: u32,
-    /// A texture of more bytes is refused before the device is asked for it: some drivers abort the program instead of
-    /// reporting that memory is out.
+    /// A texture of more bytes, or a buffer of more in place of one, is refused before the device is asked for it: some drivers abort the
+    /// program instead of reporting that memory is out.
     pub max_texture_bytes: u64,
 }
 
@@ -31,7 +30,8 @@ pub struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
-    lost: Arc<AtomicBool>,
+    /// Why it was lost; empty while it is not.
+    lost: Arc<OnceLock<String>>,
     max_texture_bytes: u64,
 }
 
@@ -52,6 +52,11 @@ pub fn adapter_lines() -> Vec<String> {
 fn describe(info: &wgpu::AdapterInfo) -> String {
     let driver = format!("{} {}", info.driver, info.driver_info);
     format!("{} ({:?}, {}, {})", info.name, info.device_type, info.backend, driver.trim())
+}
+
+/// What the driver says of a loss, as a clause.
+fn cause_of_loss(reason: wgpu::DeviceLostReason, said: &str) -> String {
+    if said.is_empty() { format!("{reason:?}") } else { said.trim_end_matches('.').to_owned() }
 }
 
 impl Default for DeviceOptions {
@@ -111,9 +116,10 @@ impl Gpu {
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))?;
-        let lost = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&lost);
-        device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
+        let lost = Arc::new(OnceLock::new());
+        let cause = Arc::clone(&lost);
+        // The first cause is kept.
+        device.set_device_lost_callback(move |reason, said| drop(cause.set(cause_of_loss(reason, &said))));
         Ok(Self { device, queue, info: adapter.get_info(), lost, max_texture_bytes: options.max_texture_bytes })
     }
 
@@ -145,18 +151,20 @@ impl Gpu {
     /// Gives the device back. It is lost from now on, as if its driver had been reset: every later call fails with
     /// [`GpuError::Lost`].
     pub fn destroy(&self) {
-        self.lost.store(true, Ordering::Relaxed);
+        // Later than a loss this changes nothing.
+        let _ = self.lost.set("it was given back".to_owned());
         self.device.destroy();
     }
 
-    /// Runs `make` and turns the device's errors into a result.
+    /// Runs `make` and turns the device's errors into a result. Lack of memory goes before all else: what could not be made is invalid, and
+    /// whatever `make` then does with it is an error, too.
     pub(crate) fn checked<T>(&self, what: &'static str, make: impl FnOnce() -> T) -> Result<T, GpuError> {
         self.alive()?;
-        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let made = make();
-        let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
+        let errors = [memory, validation, internal].map(|scope| pollster::block_on(scope.pop()));
         // The loss of a device goes by error scopes.
         self.alive()?;
         match errors.into_iter().flatten().next() {
@@ -166,13 +174,16 @@ impl Gpu {
         }
     }
 
-    /// Whether a texture is within the budget.
-    pub(crate) fn affords(&self, what: String, bytes: u64) -> Result<(), GpuError> {
+    /// Whether a texture, or a buffer in place of one, is within the budget.
+    pub(crate) fn affords(&self, what: impl Into<String>, bytes: u64) -> Result<(), GpuError> {
         let budget = self.max_texture_bytes;
-        if bytes > budget { Err(GpuError::OverBudget { what, bytes, budget }) } else { Ok(()) }
+        if bytes > budget { Err(GpuError::OverBudget { what: what.into(), bytes, budget }) } else { Ok(()) }
     }
 
     fn alive(&self) -> Result<(), GpuError> {
-        if self.lost.load(Ordering::Relaxed) { Err(GpuError::Lost) } else { Ok(()) }
+        match self.lost.get() {
+            Some(why) => Err(GpuError::Lost { device: self.name(), why: why.clone() }),
+            None => Ok(()),
+        }
     }
 }

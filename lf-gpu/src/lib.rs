@@ -33,6 +33,7 @@ mod storage;
 mod stuv;
 mod target;
 mod uniforms;
+mod upload;
 mod windows;
 
 pub use cube_textures::CubePicture;

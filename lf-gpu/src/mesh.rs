@@ -5,7 +5,7 @@ use lf_math::{LitMesh, TriangleMesh};
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::buffer;
+use crate::upload::large_buffer;
 
 /// A reflective mesh on the device.
 pub struct MirrorMesh(Buffers);
@@ -28,9 +28,8 @@ impl MirrorMesh {
     /// # Errors
     /// If the mesh is too large for the device.
     pub fn new(gpu: &Gpu, mesh: &TriangleMesh) -> Result<Self, GpuError> {
-        gpu.checked("the mirror's buffers", || {
-            Self(Buffers::new(gpu, [mesh.positions(), mesh.normals()], mesh.triangles(), mesh.bounds()))
-        })
+        let attributes = [mesh.positions(), mesh.normals()];
+        Buffers::new(gpu, "the mirror's buffers", attributes, mesh.triangles(), mesh.bounds()).map(Self)
     }
 
     /// Its bounding box, in its own space.
@@ -50,9 +49,8 @@ impl SceneMesh {
     /// # Errors
     /// If it is too large for the device.
     pub fn new(gpu: &Gpu, mesh: &LitMesh) -> Result<Self, GpuError> {
-        gpu.checked("the scene's buffers", || {
-            Self(Buffers::new(gpu, [mesh.positions(), mesh.light()], mesh.triangles(), mesh.bounds()))
-        })
+        let attributes = [mesh.positions(), mesh.light()];
+        Buffers::new(gpu, "the scene's buffers", attributes, mesh.triangles(), mesh.bounds()).map(Self)
     }
 
     /// Its bounding box, cell space.
@@ -66,17 +64,22 @@ impl SceneMesh {
 }
 
 impl Buffers {
-    /// Must run in [`Gpu::checked`].
-    fn new(gpu: &Gpu, attributes: [&[Vec3]; 2], triangles: &[[u32; 3]], bounds: (Vec3, Vec3)) -> Self {
+    fn new(
+        gpu: &Gpu,
+        what: &'static str,
+        attributes: [&[Vec3]; 2],
+        triangles: &[[u32; 3]],
+        bounds: (Vec3, Vec3),
+    ) -> Result<Self, GpuError> {
         let [positions, others] = attributes;
         let vertices: Vec<[Vec3; 2]> =
             positions.iter().zip(others).map(|(&position, &other)| [position, other]).collect();
-        Self {
-            vertices: buffer(gpu, "vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-            indices: buffer(gpu, "indices", bytemuck::cast_slice(triangles), wgpu::BufferUsages::INDEX),
+        Ok(Self {
+            vertices: large_buffer(gpu, what, bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?,
+            indices: large_buffer(gpu, what, bytemuck::cast_slice(triangles), wgpu::BufferUsages::INDEX)?,
             index_count: 3 * triangles.len() as u32,
             bounds,
-        }
+        })
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instance: u32) {

@@ -31,9 +31,8 @@ pub(crate) fn bilinear_sampler(gpu: &Gpu) -> wgpu::Sampler {
     })
 }
 
-/// A buffer with the given contents; must run in [`Gpu::checked`].
+/// A small buffer with the given contents; must run in [`Gpu::checked`]. Large ones are [`crate::upload::large_buffer`]s.
 pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    // Not mapped at creation: that panics where the device has too little memory.
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: contents.len() as u64,

@@ -7,7 +7,7 @@ use lf_compress::planes::{PlaneBlock, PlaneImage};
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::buffer;
+use crate::upload::large_buffer;
 
 /// Distance cubes in blocks, for all shaders that ask them.
 pub(crate) const PLANE_BLOCKS: &[&str] = &[
@@ -15,6 +15,9 @@ pub(crate) const PLANE_BLOCKS: &[&str] = &[
     include_str!("shaders/cube_faces.wgsl"),
     include_str!("shaders/plane_blocks.wgsl"),
 ];
+
+/// Name of depths in errors.
+const DEPTHS: &str = "the depths of distance cubes";
 
 /// What plane_blocks.wgsl asks for: blocks as they are stored, and where those of each cube lie.
 pub(crate) struct PlaneBlocks {
@@ -38,10 +41,9 @@ impl PlaneBlocks {
         let images = cubes.iter().flat_map(PackedCube::inverse_depths);
         let blocks: Vec<u8> = images.flat_map(PlaneImage::blocks).flat_map(PlaneBlock::to_bytes).collect();
         let entries = entries(cubes);
-        gpu.checked("the depths of distance cubes", || Self {
-            blocks: buffer(gpu, "blocks", &blocks, wgpu::BufferUsages::STORAGE),
-            cubes: buffer(gpu, "cubes", bytemuck::cast_slice(&entries), wgpu::BufferUsages::STORAGE),
-        })
+        gpu.affords(DEPTHS, blocks.len() as u64)?;
+        let buffer = |bytes| large_buffer(gpu, DEPTHS, bytes, wgpu::BufferUsages::STORAGE);
+        Ok(Self { blocks: buffer(&blocks)?, cubes: buffer(bytemuck::cast_slice(&entries))? })
     }
 
     pub(crate) fn bindings(&self) -> [(u32, wgpu::BindingResource<'_>); 2] {

@@ -5,11 +5,12 @@ use lf_math::Face;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
-use crate::pass::{bilinear_sampler, bind_group, buffer, clear_color, pipeline};
+use crate::pass::{bilinear_sampler, bind_group, clear_color, pipeline};
 use crate::shader::{Part, Shader};
 use crate::slab_texture::SlabTexture;
 use crate::target::Target;
 use crate::uniforms::ProbeUniform;
+use crate::upload::large_buffer;
 
 /// Probes in a row of the picture they are drawn into.
 pub(crate) const PER_ROW: u32 = 512;
@@ -41,7 +42,10 @@ pub fn read_probes(gpu: &Gpu, texture: &SlabTexture, probes: &[Probe]) -> Result
     let rows = probes.len().div_ceil(PER_ROW as usize);
     let height = u32::try_from(rows).unwrap_or(u32::MAX);
     let target = Target::new(gpu, PER_ROW, height)?;
-    gpu.checked("the probe pass", || draw(gpu, texture, probes, &target))?;
+    let raw = |p: &Probe| ProbeUniform { uv: p.uv, camera: p.camera, face: p.face.index().into(), padding: 0 };
+    let list: Vec<_> = probes.iter().map(raw).collect();
+    let list = large_buffer(gpu, "the probes", bytemuck::cast_slice(&list), wgpu::BufferUsages::STORAGE)?;
+    gpu.checked("the probe pass", || draw(gpu, texture, &list, &target))?;
     let picture = target.read(gpu)?;
     Ok(picture.texels()[..probes.len()].to_vec())
 }
@@ -57,11 +61,8 @@ impl Probe {
     }
 }
 
-fn draw(gpu: &Gpu, texture: &SlabTexture, probes: &[Probe], target: &Target) {
+fn draw(gpu: &Gpu, texture: &SlabTexture, list: &wgpu::Buffer, target: &Target) {
     let pipeline = pipeline(gpu, Shader::Slabs(texture.shader()), Part::Probe);
-    let raw = |p: &Probe| ProbeUniform { uv: p.uv, camera: p.camera, face: p.face.index().into(), padding: 0 };
-    let raw: Vec<_> = probes.iter().map(raw).collect();
-    let list = buffer(gpu, "probes", bytemuck::cast_slice(&raw), wgpu::BufferUsages::STORAGE);
     let sampler = bilinear_sampler(gpu);
     let resources = texture.bindings(&sampler).into_iter().chain([(4, list.as_entire_binding())]);
     let bindings = bind_group(gpu, &pipeline, resources);

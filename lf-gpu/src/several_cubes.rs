@@ -13,6 +13,12 @@ use crate::pass::{ReflectionPass, bilinear_sampler, buffer};
 use crate::plane_blocks::{PLANE_BLOCKS, PlaneBlocks, mirror_words};
 use crate::shader::Shader;
 use crate::uniforms::SlabsUniform;
+use crate::upload::large_buffer;
+
+/// Name of the guide in errors.
+const GUIDE: &str = "the guide of distance cubes";
+/// Name of what says which planes are mirrors.
+const MIRRORS: &str = "the mirrors of guided cubes";
 
 /// `March` of probes.wgsl.
 #[repr(C)]
@@ -77,10 +83,14 @@ impl ReflectionPass {
         let half_extent = data.guide().geometry().cell().half_extent();
         let guided = GuidedUniform { half_extent, reach: data.reach(), far: data.far(), ..GuidedUniform::zeroed() };
         let (slabs, words) = (SlabsUniform::of_guide(data.guide()), guide_words(data.guide()));
-        let mirrors = data.cubes().iter().any(PackedCube::has_mirrors).then(|| mirror_words(data.cubes()));
+        gpu.affords(GUIDE, 4 * words.len() as u64)?;
+        let words = large_buffer(gpu, GUIDE, bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE)?;
+        let marks = data.cubes().iter().any(PackedCube::has_mirrors).then(|| mirror_words(data.cubes()));
+        let marks =
+            marks.map(|marks| large_buffer(gpu, MIRRORS, bytemuck::cast_slice(&marks), wgpu::BufferUsages::STORAGE));
+        let marks = marks.transpose()?;
         gpu.checked("the pipeline of guided cubes", || {
             let slabs = buffer(gpu, "slabs", bytemuck::bytes_of(&slabs), wgpu::BufferUsages::UNIFORM);
-            let words = buffer(gpu, "guide", bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE);
             let guided = buffer(gpu, "guided", bytemuck::bytes_of(&guided), wgpu::BufferUsages::UNIFORM);
             let mut resources = vec![
                 (1, slabs.as_entire_binding()),
@@ -89,10 +99,8 @@ impl ReflectionPass {
                 (8, guided.as_entire_binding()),
             ];
             resources.extend(depths.bindings());
-            let mirrors =
-                mirrors.map(|words| buffer(gpu, "mirrors", bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE));
-            resources.extend(mirrors.iter().map(|words| (9, words.as_entire_binding())));
-            Self::new(gpu, Shader::Guided { mirrors: mirrors.is_some() }, &resources)
+            resources.extend(marks.iter().map(|marks| (9, marks.as_entire_binding())));
+            Self::new(gpu, Shader::Guided { mirrors: marks.is_some() }, &resources)
         })
     }
 }

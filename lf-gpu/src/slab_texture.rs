@@ -12,9 +12,10 @@ use crate::pass::buffer;
 use crate::shader::{SlabShader, Windows};
 use crate::storage::{Plan, Storage};
 use crate::uniforms::SlabsUniform;
+use crate::upload::write_image;
 use crate::windows::WindowTable;
 
-/// Texture bytes handed to the queue before it is made to pass them on: until then it keeps a copy of each.
+/// Texture bytes handed to the device before it is waited for: until then it keeps a copy of each.
 const UPLOAD_BATCH: usize = 64 << 20;
 
 /// A light field on the device.
@@ -60,10 +61,11 @@ impl SlabTexture {
                 let Some(slice) = layout.slice(number) else { continue };
                 let size = tiling.tile_size(number);
                 let bytes = texture_bytes(plan.storage, tiling.encoding(), size, tile)?;
-                gpu.checked("a slice of the slab texture", || upload(gpu, &texture, &plan, slice, size, &bytes))?;
+                // A slice may be larger than its tile; the rest stays zero and is never sampled.
+                write_image(gpu, "a slice of the slab texture", &texture, plan.layers.place(slice), size, &bytes)?;
                 waiting += bytes.len();
                 if waiting >= UPLOAD_BATCH {
-                    gpu.queue.submit([]);
+                    gpu.wait()?;
                     waiting = 0;
                 }
             }
@@ -151,28 +153,4 @@ fn texture_bytes(
         TexelEncoding::Rgb16F => Ok(rgba16f(tile).into()),
         _ => Ok(tile.into()),
     }
-}
-
-/// Writes one slice. A slice may be larger than the tile; the rest stays zero and is never sampled.
-fn upload(gpu: &Gpu, texture: &wgpu::Texture, plan: &Plan, slice: u32, size: [u32; 2], bytes: &[u8]) {
-    let ([width, height], storage) = (size, plan.storage);
-    let [x, y, z] = plan.layers.place(slice);
-    // A row of BC1 blocks is 8 bytes for every 4 texels.
-    let (bytes_per_row, rows_per_image) =
-        if storage.has_blocks() { (2 * width, height / 4) } else { (storage.texel_bytes() * width, height) };
-    gpu.queue.write_texture(
-        wgpu::TexelCopyTextureInfo {
-            texture,
-            mip_level: 0,
-            origin: wgpu::Origin3d { x, y, z },
-            aspect: wgpu::TextureAspect::All,
-        },
-        bytes,
-        wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(bytes_per_row),
-            rows_per_image: Some(rows_per_image),
-        },
-        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-    );
 }

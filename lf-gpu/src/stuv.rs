@@ -4,6 +4,7 @@ use lf_math::Image;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
+use crate::storage::slice_bytes;
 use crate::target::{Target, attachment, plain, read_back, view};
 
 /// What each pixel asks of the slabs, (s′, t′, u′, v′) and the slab (§7 and Fig. 5c of the paper): 17 bytes a pixel, and a depth
@@ -25,8 +26,10 @@ impl StuvBuffer {
     /// # Errors
     /// If the device cannot make it.
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Result<Self, GpuError> {
-        gpu.checked("the stuv buffer", || {
-            let make = |format, usage| attachment(gpu, [width, height], format, usage);
+        let (what, size) = ("the stuv buffer", [width, height]);
+        gpu.affords(what, slice_bytes(Self::STUV, size))?;
+        gpu.checked(what, || {
+            let make = |format, usage| attachment(gpu, size, format, usage);
             let bound = wgpu::TextureUsages::TEXTURE_BINDING;
             let texture = make(Self::STUV, bound | wgpu::TextureUsages::COPY_SRC);
             let depth = make(Target::DEPTH, wgpu::TextureUsages::empty());

@@ -5,6 +5,8 @@ use lf_math::Image;
 
 use crate::error::GpuError;
 use crate::gpu::Gpu;
+use crate::storage::slice_bytes;
+use crate::upload::pitch;
 
 /// An offscreen colour target of 8-bit RGBA with a depth buffer.
 pub struct Target {
@@ -25,8 +27,9 @@ impl Target {
     /// # Errors
     /// If the device cannot make it.
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Result<Self, GpuError> {
-        gpu.checked("the render target", || {
-            let size = [width, height];
+        let (what, size) = ("the render target", [width, height]);
+        gpu.affords(what, slice_bytes(Self::COLOR, size))?;
+        gpu.checked(what, || {
             let texture = attachment(gpu, size, Self::COLOR, wgpu::TextureUsages::COPY_SRC);
             let depth = attachment(gpu, size, Self::DEPTH, wgpu::TextureUsages::empty());
             Self { color: view(&texture), depth: view(&depth), texture }
@@ -73,7 +76,7 @@ pub(crate) fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
 /// A texture's texels, which `T` lays out as its format does; waits for the device.
 pub(crate) fn read_back<T: Pod>(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Image<T>, GpuError> {
     let row_bytes = size_of::<T>() * texture.width() as usize;
-    let pitch = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+    let pitch = pitch(row_bytes);
     let refused = |why: String| GpuError::Refused { what: "to give a picture back", why };
     let buffer = gpu.checked("the read-back buffer", || copy_to_buffer(gpu, texture, pitch))?;
     let (sender, receiver) = std::sync::mpsc::channel();
