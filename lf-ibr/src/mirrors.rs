@@ -2,7 +2,7 @@
 //!
 //! What a curved mirror shows depends on where it is seen from, and neither pictures from a few places nor slabs of affordable size know it:
 //! no focal plane, no depth makes its texels agree. So their texels hold what the mirror reflects of its light instead, and a ray that ends
-//! on one goes on through the same cubes, as rays go on through layered depth images (Lischinski & Rappoport 1998, §4). The mirror's normal
+//! on one goes on through the same cubes, as rays go on through layered depth images (Lischinski & Rappoport 1998, §4.3). The mirror's normal
 //! is that of the planes which blocks of depths hold anyway, blended between the blocks around: the plane that fits a curved surface best has its
 //! normal in the block's middle. So mirrors cost two bits a block.
 //!
