@@ -154,8 +154,9 @@ impl SurfaceCube {
         palette::color(&self.color_block(((face * across + y / 4) * across + x / 4) as usize), 4 * (y % 4) + x % 4)
     }
 
-    /// The normal of a mirror at a place: the normals of the four blocks around, those of their planes that are mirrors and pass the place within a
-    /// share of its depth, blended by how near to the blocks' middles it is, and longer the more squarely it is seen.
+    /// The normal of a mirror at a place: the normals of the four blocks around, those of their planes that are mirrors and pass the place
+    /// within a share of its depth, blended by how near to the blocks' middles it is and how many texels show the plane, and longer the more squarely
+    /// it is seen.
     pub(crate) fn mirror_normal(&self, place: Vec3, same: f32) -> Vec3 {
         let away = place - self.position;
         let Spot { face, at } = self.spot(away);
@@ -169,13 +170,15 @@ impl SurfaceCube {
             }
             let number = ((face * self.across + block.y as u32) * self.across + block.x as u32) as usize;
             let share = Vec2::ONE - (among - block).abs();
-            let marks = self.mirrors.get(number).zip(self.blocks.get(number));
-            for (plane, is_mirror) in marks.into_iter().flat_map(|(marks, block)| block.planes.into_iter().zip(*marks))
+            let Some((marks, block)) = self.mirrors.get(number).zip(self.blocks.get(number)) else { continue };
+            let texels = [block.mask.count_zeros(), block.mask.count_ones()];
+            for ((plane, texels), _) in
+                block.planes.into_iter().zip(texels).zip(marks).filter(|(_, is_mirror)| **is_mirror)
             {
-                if is_mirror && (plane.dot(away) - 1.0).abs() < same {
+                if (plane.dot(away) - 1.0).abs() < same {
                     // The plane's vector is as long as the inverse of its distance, and leads away.
-                    let cosine = (plane.length() * distance).recip();
-                    sum -= share.x * share.y * cosine * cosine * plane.normalize();
+                    let squarely = (plane.length() * distance).powi(-2);
+                    sum -= share.x * share.y * texels as f32 * squarely * plane.normalize();
                 }
             }
         }

@@ -73,6 +73,13 @@ fn is_mirror(face: FaceBlocks, block: vec2u, plane: u32) -> bool {
     return (mirrors[number / 16u] >> (2u * (number % 16u) + plane) & 1u) == 1u;
 }
 
+// How many texels show a plane of a block; those that a face lacks count for the first.
+fn texels_of(face: FaceBlocks, place: vec2u, is_second: bool) -> u32 {
+    let number = face.first + place.y * face.across + place.x;
+    let second = countOneBits(blocks[number].masks[0]) + countOneBits(blocks[number].masks[1]);
+    return select(BLOCK_EDGE * BLOCK_EDGE - second, second, is_second);
+}
+
 // The normal of a mirror at a place, blended from the planes of the four blocks around.
 fn mirror_normal(cube: u32, spot: Spot) -> vec3f {
     let size = cubes[cube].size;
@@ -92,7 +99,8 @@ fn mirror_normal(cube: u32, spot: Spot) -> vec3f {
             if is_mirror(face, vec2u(block), second) && abs(dot(plane, spot.away) - 1.0) < SAME {
                 let inverse = 1.0 / length(plane);
                 let cosine = inverse / distance;
-                sum -= share.x * share.y * cosine * cosine * inverse * plane;
+                let texels = f32(texels_of(face, vec2u(block), second == 1u));
+                sum -= share.x * share.y * texels * cosine * cosine * inverse * plane;
             }
         }
     }
