@@ -32,7 +32,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<()> {
     bar.finish_and_clear();
     match noise(picture.texels().iter().map(|estimate| (&estimate.radiance, &estimate.standard_error))) {
         Some(share) => {
-            eprintln!("noise    standard error at most {:.2} % of the radiance, mean of all pixels", 100.0 * share)
+            eprintln!("noise    standard error at most {:.2} % of the radiance, mean of all pixels", 100.0 * share);
         }
         None => eprintln!("noise    not known from one sample a pixel"),
     }
