@@ -2,7 +2,7 @@
 //!
 //! Each decision on a path takes a point of the unit square. All samples of a ray together take points of Sobol's sequence in two
 //! dimensions: of 2ᵐ points every dyadic rectangle of area 2⁻ᵐ has one. Each decision flips digits of its own in all points
-//! (Kollig & Keller: Efficient Multidimensional Sampling, Eurographics 2002, §2), so that one point alone is uniform; and has an
+//! (Kollig & Keller: Efficient Multidimensional Sampling, Eurographics 2002), so that one point alone is uniform; and has an
 //! order of its own, so that no two decisions are related (Burley: Practical Hash-based Owen Scrambling, JCGT 9(4), 2020, which calls
 //! it padding). The error of a mean over n points falls faster than n⁻¹ᐟ² where it depends on few decisions; n need not be a
 //! power of two. Owen's scrambling, which flips each digit by those before it, is dearer and leaves larger errors with 4 to 16 samples.
