@@ -299,7 +299,7 @@ fn noise_note(name: &str, frames: &ReflectorFrames) -> Option<String> {
     let radiance = frames.references.iter().flat_map(|reference| reference.radiance.texels());
     let error = frames.references.iter().flat_map(|reference| reference.standard_error.texels());
     let share = noise(radiance.zip(error)).filter(|share| *share > 0.0)?;
-    Some(format!("{name}: the standard error of the references is {:.2} % of their radiance.", 100.0 * share))
+    Some(format!("{name}: the standard error of the references is at most {:.2} % of their radiance.", 100.0 * share))
 }
 
 /// How far the GPU's slab pictures are from the CPU's, if both were drawn.

@@ -21,7 +21,8 @@ pub(crate) fn display(linear: &Image<Vec3>) -> Image<[u8; 4]> {
     })
 }
 
-/// The mean standard error of radiances, as a share of their mean; `None` if it is not known. Takes radiances with their errors.
+/// The mean standard error of radiances, as a share of their mean, an upper bound ([`Estimate::standard_error`](lf_scene::Estimate)); `None` if
+/// it is not known. Takes radiances with their errors.
 pub(crate) fn noise<'a>(known: impl Iterator<Item = (&'a Vec3, &'a Vec3)>) -> Option<f64> {
     let sum = |color: &Vec3| color.as_dvec3().element_sum();
     let add = |(radiance, error), (l, e): (&Vec3, &Vec3)| (radiance + sum(l), error + sum(e));

@@ -138,7 +138,9 @@ fn against(
     let title = format!("difference x{ERROR_GAIN}");
     let panels = strip(&[("ray traced", truth), ("slabs", ours), (&title, apart)]);
     let noise = match noise(traced.radiance.texels().iter().zip(traced.standard_error.texels())) {
-        Some(share) if share > 0.0 => format!("; the traced picture's standard error is {:.2} %", 100.0 * share),
+        Some(share) if share > 0.0 => {
+            format!("; the traced picture's standard error is at most {:.2} %", 100.0 * share)
+        }
         _ => String::new(),
     };
     Ok((panels, format!(": {:.2} dB PSNR over the mirror's pixels{noise}", error.psnr_db())))

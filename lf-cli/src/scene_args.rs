@@ -31,7 +31,7 @@ pub(crate) struct LightArgs {
     /// Which light is traced
     #[arg(long, value_enum, default_value_t = LightKind::Direct)]
     pub(crate) light: LightKind,
-    /// Samples of each ray; the noise falls with their root [default: 1, with global light 64]
+    /// Samples of each ray; the noise falls with their root, in soft light faster [default: 1, with global light 64]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub(crate) samples: Option<u32>,
     /// How often light may be scattered on its way; global light only
@@ -78,7 +78,7 @@ pub(crate) struct ViewArgs {
     pub(crate) scene: String,
     #[command(flatten)]
     pub(crate) light: LightArgs,
-    /// A picture to write: .png, or .exr for the radiance itself, its standard error (`error`) and distance (`Z`)
+    /// A picture to write: .png, or .exr for the radiance itself, its standard error (`error`, an upper bound) and distance (`Z`)
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Which of the scene's cameras takes the picture: its number from 0, or its name

@@ -31,7 +31,9 @@ pub(crate) fn run(args: &ViewArgs) -> Result<()> {
     let picture = view(&tracer, &camera, &|done| bar.set_position(done));
     bar.finish_and_clear();
     match noise(picture.texels().iter().map(|estimate| (&estimate.radiance, &estimate.standard_error))) {
-        Some(share) => eprintln!("noise    standard error {:.2} % of the radiance, mean of all pixels", 100.0 * share),
+        Some(share) => {
+            eprintln!("noise    standard error at most {:.2} % of the radiance, mean of all pixels", 100.0 * share);
+        }
         None => eprintln!("noise    not known from one sample a pixel"),
     }
     if is_exr {

@@ -81,7 +81,7 @@ impl Bsdf {
     /// Picks a direction, more often one that matters.
     pub(crate) fn sample(&self, viewer: Vec3, random: &mut Random) -> Option<Scattered> {
         let towards = match self {
-            Self::Lambert(_) => cosine_hemisphere(Vec2::new(random.uniform(), random.uniform())),
+            Self::Lambert(_) => cosine_hemisphere(random.pair()),
             Self::Glossy(glossy) => glossy.sample(viewer, random),
             Self::Smooth(smooth) => return Some(smooth.scatter(viewer, random.uniform())),
         };
@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn scattering_is_reciprocal() {
         let mut random = Random::of([3]);
-        let mut direction = || cosine_hemisphere(Vec2::new(random.uniform(), random.uniform()));
+        let mut direction = || cosine_hemisphere(random.pair());
         for bsdf in models() {
             for _ in 0..1000 {
                 let (a, b) = (direction(), direction());

@@ -75,21 +75,23 @@ impl Emitters {
 
     /// A place that may light a point.
     pub(crate) fn pick(&self, scene: &Scene, lit: Vec3, random: &mut Random) -> Option<Place> {
-        if random.uniform() < self.environment {
-            return self.pick_direction(&scene.lighting().environment, random);
+        // Each choice goes on with what is left of the number that made the one before.
+        let ([x, y], share) = (random.fine(), f64::from(self.environment));
+        if x < share {
+            return self.pick_direction(&scene.lighting().environment, [x / share, y]);
         }
-        let triangle = self.triangles[self.choice.as_ref()?.choose(random.fine())];
-        self.pick_point(scene, triangle, lit, random)
+        let (number, x) = self.choice.as_ref()?.choose((x - share) / (1.0 - share));
+        self.pick_point(scene, self.triangles[number], lit, [x, y])
     }
 
-    fn pick_direction(&self, environment: &Environment, random: &mut Random) -> Option<Place> {
-        let (towards, pdf) = environment.sample(random)?;
+    fn pick_direction(&self, environment: &Environment, uniform: [f64; 2]) -> Option<Place> {
+        let (towards, pdf) = environment.sample(uniform)?;
         Some(Place { towards, radiance: environment.towards(towards), pdf: self.environment * pdf, point: None })
     }
 
-    fn pick_point(&self, scene: &Scene, triangle: usize, lit: Vec3, random: &mut Random) -> Option<Place> {
+    fn pick_point(&self, scene: &Scene, triangle: usize, lit: Vec3, uniform: [f64; 2]) -> Option<Place> {
         let (corners, material) = &scene.triangles()[triangle];
-        let shares = uniform_shares(random);
+        let shares = uniform_shares(uniform);
         let (uv, positions) = (uv_on(corners, shares), corners.map(|v| v.position));
         let surface = scene.material(triangle);
         if surface.is_hole(uv) {
@@ -108,11 +110,11 @@ impl Emitters {
     }
 }
 
-/// Shares of a triangle's corners for a point spread evenly (Turk: Generating Random Points in Triangles, 1990).
-fn uniform_shares(random: &mut Random) -> Vec3 {
-    let root = random.uniform().sqrt();
-    let along = random.uniform();
-    Vec3::new(1.0 - root, root * (1.0 - along), root * along)
+/// Shares of a triangle's corners for a point of the unit square, evenly (Heitz: A Low-Distortion Map Between Triangle and
+/// Square, 2019).
+fn uniform_shares([x, y]: [f64; 2]) -> Vec3 {
+    let (first, second) = if y > x { (0.5 * x, y - 0.5 * x) } else { (x - 0.5 * y, 0.5 * y) };
+    DVec3::new(1.0 - first - second, first, second).as_vec3()
 }
 
 /// In `f64`, so that triangles of a micrometre have an area too.

@@ -9,7 +9,6 @@ use lf_math::{GeometryError, Image};
 use crate::distribution::Distribution;
 use crate::light::MAX_RADIANCE;
 use crate::material::luminance;
-use crate::random::Random;
 
 /// The radiance that arrives from outside the scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,9 +25,16 @@ pub enum Environment {
 pub struct EnvironmentMap {
     radiance: Image<Vec3>,
     turn: f32,
-    /// How much light each cell between texel centres sends; `None` if none does. Row by row; one row more than texels, as the first and the last
-    /// reach from the centres to the poles.
-    cells: Option<Distribution>,
+    /// `None` if nothing shines.
+    light: Option<LightByCell>,
+}
+
+/// How much light each cell between texel centres sends. Row by row; one row more than texels, as the first and the last reach
+/// from the centres to the poles.
+#[derive(Debug, Clone, PartialEq)]
+struct LightByCell {
+    rows: Distribution,
+    cells: Distribution,
 }
 
 impl Environment {
@@ -48,20 +54,20 @@ impl Environment {
     pub(crate) fn shines(&self) -> bool {
         match self {
             Self::Sky(zenith) => *zenith != Vec3::ZERO,
-            Self::Map(map) => map.cells.is_some(),
+            Self::Map(map) => map.light.is_some(),
         }
     }
 
-    /// A unit direction, picked about in proportion to its luminance, and the density there, 1/sr.
-    pub(crate) fn sample(&self, random: &mut Random) -> Option<(Vec3, f32)> {
+    /// A unit direction, picked by a point of the unit square about in proportion to its luminance, and the density there, 1/sr.
+    pub(crate) fn sample(&self, [x, y]: [f64; 2]) -> Option<(Vec3, f32)> {
         match self {
             Self::Sky(_) => {
                 // The integral of `pdf` below y, solved for y.
-                let y = (4.0 + 12.0 * f64::from(random.uniform())).sqrt() - 3.0;
-                let direction = at_height(y.clamp(-1.0, 1.0), TAU * random.uniform());
+                let height = (4.0 + 12.0 * x).sqrt() - 3.0;
+                let direction = at_height(height.clamp(-1.0, 1.0), TAU * y as f32);
                 Some((direction, self.pdf(direction)))
             }
-            Self::Map(map) => map.sample(random),
+            Self::Map(map) => map.sample([x, y]),
         }
     }
 
@@ -96,13 +102,14 @@ impl EnvironmentMap {
         for texel in radiance.texels_mut() {
             *texel = texel.min(Vec3::splat(MAX_RADIANCE));
         }
-        let mut map = Self { radiance, turn, cells: None };
+        let mut map = Self { radiance, turn, light: None };
         let columns = map.radiance.width();
         let weight = |row: u32, column: u32| f64::from(map.cell_luminance(column, row)) * map.cell_angle(row);
         let rows = 0..=map.radiance.height();
-        map.cells = Distribution::new(
+        let cells = Distribution::new(
             rows.flat_map(|row| (0..columns).map(move |column| (row, column))).map(|(row, column)| weight(row, column)),
         );
+        map.light = cells.map(|cells| LightByCell { rows: cells.grouped(columns as usize), cells });
         Ok(map)
     }
 
@@ -148,15 +155,16 @@ impl EnvironmentMap {
         (upper - lower) * std::f64::consts::TAU / f64::from(self.radiance.width())
     }
 
-    /// Picks a cell by its light, and a direction in it evenly.
-    fn sample(&self, random: &mut Random) -> Option<(Vec3, f32)> {
-        let cells = self.cells.as_ref()?;
-        let (width, cell) = (self.radiance.width(), cells.choose(random.fine()));
-        let (column, row) = (cell as u32 % width, (cell / width as usize) as u32);
+    /// Picks a row and a cell of it by their light, and a direction in it evenly.
+    fn sample(&self, [x, y]: [f64; 2]) -> Option<(Vec3, f32)> {
+        let LightByCell { rows, cells } = self.light.as_ref()?;
+        let width = self.radiance.width() as usize;
+        let (row, down) = rows.choose(x);
+        let (cell, across) = cells.choose_among(row * width..(row + 1) * width, y);
+        let (column, row) = ((cell % width) as u32, row as u32);
         let [upper, lower] = self.row_heights(row);
-        let y = upper + (lower - upper) * f64::from(random.uniform());
-        let u = (column as f32 + 0.5 + random.uniform()) / width as f32;
-        let direction = at_height(y, (u - 0.5) * TAU + self.turn);
+        let u = (column as f32 + 0.5 + across as f32) / width as f32;
+        let direction = at_height(upper + (lower - upper) * down, (u - 0.5) * TAU + self.turn);
         Some((direction, self.cell_pdf(column, row)))
     }
 
@@ -168,7 +176,7 @@ impl EnvironmentMap {
     }
 
     fn cell_pdf(&self, column: u32, row: u32) -> f32 {
-        let total = self.cells.as_ref().map_or(f64::INFINITY, Distribution::total);
+        let total = self.light.as_ref().map_or(f64::INFINITY, |light| light.cells.total());
         (f64::from(self.cell_luminance(column, row)) / total) as f32
     }
 }
@@ -177,6 +185,7 @@ impl EnvironmentMap {
 mod tests {
     use super::*;
     use crate::chi_square::assert_picks;
+    use crate::random::Random;
 
     /// A dim panorama with a few bright texels, among them some at the poles and at the seam. Its cells lie as the bins of the test do.
     fn panorama() -> Environment {
@@ -194,7 +203,7 @@ mod tests {
     fn directions_are_picked_as_densely_as_told() {
         for (what, environment) in [("sky", Environment::Sky(Vec3::ONE)), ("panorama", panorama())] {
             let mut random = Random::of([1]);
-            let sample = || environment.sample(&mut random).map(|(direction, _)| direction);
+            let sample = || environment.sample(random.fine()).map(|(direction, _)| direction);
             let total = assert_picks(what, sample, |direction| environment.pdf(direction));
             assert!((total - 1.0).abs() < 2e-3, "{what}: {total}");
         }
@@ -208,14 +217,14 @@ mod tests {
         let mut random = Random::of([2]);
         let mut same = 0;
         for _ in 0..10_000 {
-            let (direction, pdf) = environment.sample(&mut random).unwrap();
+            let (direction, pdf) = environment.sample(random.fine()).unwrap();
             assert!((direction.length() - 1.0).abs() < 1e-5 && pdf > 0.0);
             same += u32::from(environment.pdf(direction) == pdf);
         }
         assert!(same > 9_990, "{same}");
         let sky = Environment::Sky(Vec3::ONE);
         for _ in 0..10_000 {
-            let (direction, _) = sky.sample(&mut random).unwrap();
+            let (direction, _) = sky.sample(random.fine()).unwrap();
             assert!(environment.towards(direction) == Vec3::ZERO || environment.pdf(direction) > 0.0);
         }
     }
@@ -227,7 +236,7 @@ mod tests {
         let environment = Environment::Map(Arc::new(EnvironmentMap::new(image, 0.0).unwrap()));
         let mut random = Random::of([3]);
         for _ in 0..1000 {
-            let (direction, pdf) = environment.sample(&mut random).unwrap();
+            let (direction, pdf) = environment.sample(random.fine()).unwrap();
             assert!(pdf.is_finite() && pdf > 0.0 && environment.pdf(direction).is_finite(), "{direction}: {pdf}");
             assert!(environment.towards(direction).max_element() <= 1e9);
         }
@@ -245,6 +254,6 @@ mod tests {
         assert!((map(0.5 * PI).towards(Vec3::new(1.0, 0.5, 0.0).normalize()) - middle).length() < 1e-4);
         assert_eq!((map(0.0).towards(Vec3::Y).y, map(0.0).towards(Vec3::NEG_Y).y), (0.0, 1.0));
         let black = Environment::Map(Arc::new(EnvironmentMap::new(Image::filled(4, 2, Vec3::ZERO), 0.0).unwrap()));
-        assert!(!black.shines() && black.sample(&mut Random::of([0])).is_none() && map(0.0).shines());
+        assert!(!black.shines() && black.sample([0.5; 2]).is_none() && map(0.0).shines());
     }
 }

@@ -56,12 +56,13 @@ impl Glossy {
 
     /// A direction, possibly below the surface.
     pub(crate) fn sample(&self, viewer: Vec3, random: &mut Random) -> Vec3 {
-        let by_facets = random.uniform() < self.facet_share(viewer);
-        let uniform = Vec2::new(random.uniform(), random.uniform());
-        if !by_facets {
-            return cosine_hemisphere(uniform);
+        let Vec2 { x, y } = random.pair();
+        let share = self.facet_share(viewer);
+        // What is left of the number that chose.
+        if x >= share {
+            return cosine_hemisphere(Vec2::new((x - share) / (1.0 - share), y));
         }
-        let half = self.visible_normal(viewer, uniform);
+        let half = self.visible_normal(viewer, Vec2::new(x / share, y));
         2.0 * viewer.dot(half) * half - viewer
     }
 

@@ -10,9 +10,9 @@
 //! [`Quality`] says which light is traced: direct light over an ambient term, or all light by path tracing with next-event
 //! estimation, multiple importance sampling and Russian roulette. Light comes from points, spots and suns, glowing triangles and
 //! the [`Environment`]; surfaces are diffuse, glTF 2.0's metallic-roughness (GGX), mirrors and clear glass ([`Scattering`]), with holes
-//! where a picture's alpha says so. Every answer comes with its standard error ([`Estimate`]).
+//! where a picture's alpha says so. Every answer comes with an upper bound of its standard error ([`Estimate`]).
 //!
-//! An answer is a function of scene, [`Quality`] and ray: the random numbers of a sample are a hash of seed, sample and ray. Hits are
+//! An answer is a function of scene, [`Quality`] and ray: the random numbers of a sample are a function of seed, sample and ray. Hits are
 //! watertight, and rays leave surfaces from where rounding cannot bring them back, so that neither the unit of length nor the distance
 //! from the origin matters (a power of two changes no bit of the radiance). Origins of rays should be within about the largest coordinate of
 //! the scene; from farther away a ray may miss an edge.

@@ -7,7 +7,8 @@ use glam::{DVec3, Vec3};
 pub struct Quality {
     /// Which light.
     pub illumination: Illumination,
-    /// How often each ray is traced; 0 counts as 1. The error falls with the root of it.
+    /// How often each ray is traced; 0 counts as 1. The error falls with the root of it, and faster in soft light: the samples
+    /// of a ray are spread evenly over what they choose among.
     pub samples: u32,
     /// Another seed gives another noise.
     pub seed: u64,
@@ -40,7 +41,9 @@ impl Default for Quality {
 pub struct Estimate {
     /// Mean radiance of all samples, linear RGB, W/(m²·sr).
     pub radiance: Vec3,
-    /// Standard error of that mean, for each channel; infinite with one sample, which tells nothing about its error.
+    /// Standard error of that mean, for each channel, as if samples were independent; infinite with one sample, which tells nothing
+    /// about its error. Samples of one ray avoid each other, so that it is an upper bound: the true error is about as large
+    /// where many scatterings decide, and several times smaller where light of some extent falls on a surface.
     /// With few samples it is uncertain itself, and mostly too small where rare samples are bright: a lamp close to a wall.
     pub standard_error: Vec3,
     /// Ray parameter of the hit; infinite if the ray left the scene.
@@ -50,7 +53,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Mean and standard error (Welford's sums, in `f64`).
+    /// Mean and standard error (Welford's sums, in `f64`). Where samples avoid each other their covariance c is negative: the squared standard
+    /// error is then too large by −c on average.
     pub(crate) fn of(samples: impl Iterator<Item = Vec3>, distance: f32) -> Self {
         let (mut count, mut mean, mut squares) = (0u32, DVec3::ZERO, DVec3::ZERO);
         for sample in samples.map(Vec3::as_dvec3) {

@@ -116,23 +116,24 @@ impl Tracer {
         Traced { radiance, distance }
     }
 
-    /// Radiance along a ray, and its standard error.
+    /// Radiance along a ray, and an upper bound of its standard error.
     #[must_use]
     pub fn estimate(&self, origin: Vec3, direction: Vec3) -> Estimate {
         let Some(towards) = lf_math::normalized(direction) else {
             return Estimate::of(std::iter::once(Vec3::ZERO), f32::INFINITY);
         };
         let first = self.nearest(origin, direction, None);
-        let sample = |number| self.follow(first, towards, &mut self.random(number, origin, towards));
+        let random = self.random(origin, towards);
+        let sample = |number| self.follow(first, towards, &mut random.of_sample(number));
         let samples = (0..self.quality.samples.max(1)).map(sample);
         Estimate::of(samples, first.map_or(f32::INFINITY, |hit| hit.t))
     }
 
-    /// The random numbers of one sample. Adding zero makes −0 and 0 the same.
-    fn random(&self, sample: u32, origin: Vec3, towards: Vec3) -> Random {
+    /// The random numbers of a ray. Adding zero makes −0 and 0 the same.
+    fn random(&self, origin: Vec3, towards: Vec3) -> Random {
         let places = [origin * self.bvh.scale(), towards].map(|v| (v + 0.0).to_array().map(f32::to_bits));
         let words = places.into_iter().flatten().map(u64::from);
-        Random::of([self.quality.seed, u64::from(sample)].into_iter().chain(words))
+        Random::of(std::iter::once(self.quality.seed).chain(words))
     }
 
     /// The nearest hit of a ray, which may start on a surface.

@@ -284,18 +284,52 @@ fn over_lamp(point: DVec3, f: impl Fn(DVec3) -> DVec3) -> DVec3 {
     sum / f64::from(STEPS * STEPS)
 }
 
-/// The standard error is honest: the exact value is within two of them for about 95 % of many rays.
-#[test]
-fn two_standard_errors_cover_95_of_100() {
-    let tracer = with_samples(lamp_over(Material::diffuse(Vec3::ONE)), 1, 400);
+/// Errors of many rays in standard errors, from the floor under the lamp.
+fn errors_over_standard_errors(samples: u32) -> Vec<f64> {
+    let tracer = with_samples(lamp_over(Material::diffuse(Vec3::ONE)), 1, samples);
     let corners = LAMP.map(Vec3::as_dvec3);
-    let covered = (0..2000).filter(|i| {
+    let error = |i: u32| {
         let point = Vec3::new((i % 50) as f32 * 0.1 - 2.5, 0.0, (i / 50) as f32 * 0.1 - 2.0);
         let exact = 4.0 / PI * polygon_irradiance(point.as_dvec3(), DVec3::Y, &corners);
         let estimate = tracer.estimate(point + Vec3::Y * 0.5, Vec3::NEG_Y);
-        (f64::from(estimate.radiance.x) - exact).abs() < 2.0 * f64::from(estimate.standard_error.x)
-    });
-    let covered = covered.count();
-    // 95.4 % of 2000, and four standard deviations of a binomial.
-    assert!((1870..=1945).contains(&covered), "{covered} of 2000");
+        (f64::from(estimate.radiance.x) - exact).abs() / f64::from(estimate.standard_error.x)
+    };
+    (0..2000).map(error).collect()
+}
+
+/// The standard error, which takes samples for independent, is an upper bound: two of them cover the exact value for at least the 95 % of rays that they would cover
+/// then, and the typical error is the smaller a part of it the more samples there are.
+#[test]
+fn two_standard_errors_cover_95_of_100() {
+    for (samples, most) in [(16, 0.4), (400, 0.15)] {
+        let errors = errors_over_standard_errors(samples);
+        let covered = errors.iter().filter(|&&error| error < 2.0).count();
+        // 95.4 % of 2000, less four standard deviations of a binomial.
+        assert!(covered >= 1870, "{samples} samples: {covered} of 2000");
+        let typical = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+        assert!(typical < most, "{samples} samples: errors of {typical} standard errors");
+    }
+}
+
+/// However few the samples, and whatever their number, they are right on average: over rays to one point, whose spread tells the error of their mean.
+#[test]
+fn few_samples_have_no_bias() {
+    const RAYS: u32 = 20_000;
+    let metal = glossy(Vec3::new(0.9, 0.6, 0.2), 0.5, 0.5);
+    let (point, viewer) = (Vec3::new(-0.8, 0.0, 0.1), Vec3::new(-0.5, 0.7, 0.2));
+    let (v, base) = (viewer.as_dvec3().normalize(), DVec3::new(0.9, 0.6, 0.2));
+    let exact = over_lamp(point.as_dvec3(), |l| appendix_b(base, 0.5, 0.5, v, l) * l.y).x * 4.0;
+    for samples in [1, 2, 3, 4, 7, 16] {
+        let tracer = with_samples(lamp_over(metal.clone()), 1, samples);
+        let far = |i: u32| 0.2 + 1e-5 * i as f32;
+        let seen = |i: u32| f64::from(tracer.trace(point + viewer * far(i), -viewer).radiance.x);
+        let (sum, squares) = (0..RAYS).map(seen).fold((0.0, 0.0), |(sum, squares), x| (sum + x, squares + x * x));
+        let mean = sum / f64::from(RAYS);
+        let error = ((squares / f64::from(RAYS) - mean * mean) / f64::from(RAYS)).sqrt();
+        assert!(error < 0.01 * exact, "{samples} samples: {mean} ± {error}");
+        assert!(
+            (mean - exact).abs() < 3.0 * error + 1e-5 * exact,
+            "{samples} samples: {mean} ± {error}, exact {exact}"
+        );
+    }
 }

@@ -134,9 +134,9 @@ fn in_scene(
 
 /// What some frames were measured on.
 fn conditions(shot: &Shot, spec: &Spec, report: &Report) -> String {
-    let noise = shot
-        .noise()
-        .map_or_else(String::new, |share| format!(", their standard error {:.2} % of the radiance", 100.0 * share));
+    let noise = shot.noise().map_or_else(String::new, |share| {
+        format!(", their standard error at most {:.2} % of the radiance", 100.0 * share)
+    });
     let Machine { cpu, threads, adapter, .. } = &report.machine;
     format!(
         "{} in {}, {} triangles, {} eyes, {}×{} pixels; samples of each traced ray: {}{noise}. {cpu}, {threads} threads; GPU: {}.",

@@ -133,7 +133,7 @@ impl Shot {
         }
     }
 
-    /// How well the traced pictures are known, if they are noisy: their standard error as a share of the radiance.
+    /// How well the traced pictures are known, if they are noisy: the upper bound of their standard error as a share of the radiance.
     pub(crate) fn noise(&self) -> Option<f64> {
         let pairs = self.references.iter().flat_map(|r| r.radiance.texels().iter().zip(r.standard_error.texels()));
         noise(pairs).filter(|share| *share > 0.0)
