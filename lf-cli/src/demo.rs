@@ -55,7 +55,8 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
     // From here on everything comes from the file.
     let field = load(&FileArgs::new(&file))?;
     let mut prepared = prepare(source, captured, &field)?;
-    prepared.source.tracer = prepared.source.tracer.with_quality(reference_quality(args));
+    let quality = reference_quality(args, *prepared.source.tracer.quality());
+    prepared.source.tracer = prepared.source.tracer.with_quality(quality);
     let cpu = CpuSide::new(&field, &prepared.cube)?;
     let gpu = or_cpu(open_gpu(args.cpu).map(|gpu| GpuSide::new(gpu, &field, &prepared.cube, args.size)));
     let stage = Stage { source: &prepared.source, cpu: &cpu, gpu: gpu.as_ref() };
@@ -80,8 +81,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<()> {
 }
 
 /// How well the ray-traced pictures are traced: better than texels, several of which make a pixel.
-fn reference_quality(args: &DemoArgs) -> Quality {
-    let quality = args.scene.light.quality();
+fn reference_quality(args: &DemoArgs, quality: Quality) -> Quality {
     let times = match quality.illumination {
         Illumination::Direct => 1,
         Illumination::Global { .. } => 4,

@@ -11,7 +11,7 @@ use lf_gpu::{Frame, Gpu, MirrorMesh, NormalMapTexture, SceneMesh, SlabRenderer, 
 use lf_ibr::{Behind, SlabField, Texel, draw_frame};
 use lf_math::{Cell, Image, LitMesh, NormalMap, Pinhole, Placement, Reflectance, TriangleMesh, View, image_error};
 use lf_scene::reference::{self, Mirror};
-use lf_scene::{Scene, Tracer, rasterised};
+use lf_scene::{Scene, rasterised};
 
 use crate::args::{BackgroundArg, ReflectorArg, RenderArgs, ViewArg};
 use crate::device::{open_gpu, or_cpu};
@@ -93,7 +93,7 @@ fn scene_behind(args: &RenderArgs, cell: &Cell) -> Result<Option<LitMesh>> {
         }
         return Ok(None);
     };
-    let tracer = Tracer::new(Loaded::open(scene, &args.light)?.scene).with_quality(args.light.quality());
+    let tracer = args.light.tracer(Loaded::open(scene, &args.light)?.scene);
     let edge = args.scene_edge * 2.0 * cell.half_extent().min_element();
     let mesh = rasterised(&tracer, cell, edge).context("--scene-edge")?;
     let [triangles, corners] = [mesh.triangles().len(), mesh.positions().len()];
@@ -126,9 +126,9 @@ fn against(
     camera: &Pinhole,
     picture: &Image<[u8; 4]>,
 ) -> Result<(Image<[u8; 4]>, String)> {
-    let quality = args.light.quality();
-    eprintln!("trace    {}: {} triangles, samples a pixel: {}", scene.name(), scene.triangles().len(), quality.samples);
-    let tracer = Tracer::new(scene.clone()).with_quality(quality);
+    let tracer = args.light.tracer(scene.clone());
+    let (triangles, samples) = (scene.triangles().len(), tracer.quality().samples);
+    eprintln!("trace    {}: {triangles} triangles, samples a pixel: {samples}", scene.name());
     let background = display(&reference::background(&tracer, cell, camera));
     let traced = reference::render(&tracer, cell, &Mirror::new(mesh), camera);
     let truth = masked(&display(&traced.radiance), &traced.mask, &background);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use lf_scene::{Illumination, Quality};
+use lf_scene::{Illumination, Quality, Scene, Tracer};
 
 use crate::args::{CellArg, EyeArg};
 
@@ -31,7 +31,8 @@ pub(crate) struct LightArgs {
     /// Which light is traced
     #[arg(long, value_enum, default_value_t = LightKind::Direct)]
     pub(crate) light: LightKind,
-    /// Samples of each ray; the noise falls with their root, in soft light faster [default: 1, with global light 64]
+    /// Samples of each ray; the noise falls with their root, in soft light faster [default: 1, where light has an
+    /// extent 8, with global light 64]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub(crate) samples: Option<u32>,
     /// How often light may be scattered on its way; global light only
@@ -60,14 +61,20 @@ pub(crate) enum LightKind {
     Global,
 }
 
+/// Samples of rays in direct light that has an extent: their error is 41 dB below white in the box of mirror spheres, that of one sample 26.
+const SOFT_SAMPLES: u32 = 8;
+
 impl LightArgs {
-    /// What the tracer is asked for.
-    pub(crate) fn quality(&self) -> Quality {
+    /// The scene, to be traced as is asked for.
+    pub(crate) fn tracer(&self, scene: Scene) -> Tracer {
         let (illumination, samples) = match self.light {
             LightKind::Direct => (Illumination::Direct, 1),
             LightKind::Global => (Illumination::Global { max_bounces: self.bounces }, 64),
         };
-        Quality { illumination, samples: self.samples.unwrap_or(samples), seed: self.seed }
+        let quality = Quality { illumination, samples: self.samples.unwrap_or(samples), seed: self.seed };
+        let tracer = Tracer::new(scene).with_quality(quality);
+        let is_soft = illumination == Illumination::Direct && tracer.is_random() && self.samples.is_none();
+        if is_soft { tracer.with_quality(Quality { samples: SOFT_SAMPLES, ..quality }) } else { tracer }
     }
 }
 

@@ -34,7 +34,7 @@ impl Source {
         let Loaded { scene, cameras, license, cell: embedded } = Loaded::open(&args.scene, &args.light)?;
         let camera = find_camera(&cameras, args.camera.as_deref())?;
         let start = Instant::now();
-        let tracer = Tracer::new(scene).with_quality(args.light.quality());
+        let tracer = args.light.tracer(scene);
         let build_time = start.elapsed();
         let cell = match (args.cell, embedded) {
             (Some(arg), _) => Cell::cube(arg.center, arg.size).context("--cell")?,

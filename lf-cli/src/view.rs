@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Result, bail};
 use glam::Vec3;
 use lf_math::Pinhole;
-use lf_scene::{Environment, Estimate, Light, Material, Scattering, Scene, SceneCamera, Surface, Tracer, view};
+use lf_scene::{Environment, Estimate, Light, Material, Scattering, Scene, SceneCamera, Surface, view};
 
 use crate::output::{check_writable, megabytes, png, print, progress_bar, write, write_exr_channels};
 use crate::pictures::{display, noise};
@@ -26,7 +26,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<()> {
     print(&describe(&loaded).join("\n"))?;
     let Some(out) = &args.out else { return Ok(()) };
     let is_exr = is_exr(out)?;
-    let tracer = Tracer::new(loaded.scene).with_quality(args.light.quality());
+    let tracer = args.light.tracer(loaded.scene);
     let bar = progress_bar(args.size.height.into(), "view", "rows");
     let picture = view(&tracer, &camera, &|done| bar.set_position(done));
     bar.finish_and_clear();

@@ -41,7 +41,7 @@ pub(crate) struct ReportArgs {
     /// One other width and height of the pictures, in pixels
     #[arg(long, value_name = "PIXELS")]
     pub(crate) size: Option<u32>,
-    /// Samples of each ray of the traced pictures, which the others are measured against [default: 16 times --samples, 1 where nothing
+    /// Samples of each ray of the traced pictures, which the others are measured against [default: 8 times --samples, 1 where nothing
     /// is random]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) reference_samples: Option<u32>,

@@ -17,7 +17,7 @@ use crate::pictures::{display, noise};
 use crate::sources::{Source, placed};
 
 /// Times as many samples as texels have, where there is noise.
-const REFERENCE_SAMPLES: u32 = 16;
+const REFERENCE_SAMPLES: u32 = 8;
 
 /// What came of one method.
 pub(crate) struct Measured {
