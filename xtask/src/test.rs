@@ -5,6 +5,9 @@ use std::path::Path;
 use crate::steps::{CommandLine, Runner, workspace_root};
 use crate::{third_party, vulkan};
 
+/// The crate whose tests make the system's calls fail.
+const FAULTY: &str = "lf-format";
+
 /// Runs every check in order and stops at the first that fails.
 pub(crate) fn run(long: bool) -> Result<(), String> {
     let crates = packages(&workspace_root())?;
@@ -33,21 +36,22 @@ fn checks() -> Vec<(String, CommandLine)> {
     ]
 }
 
-/// What runs code: the tests of each crate alone, since a crate by itself may get fewer features of its dependencies than
-/// in the whole workspace.
+/// What runs code: all tests with the features that the whole workspace asks of its dependencies, so that those are compiled once. By itself a crate
+/// may get fewer, so each is compiled alone, too. Files are made to fail by counting the calls of a process, which no thread of another
+/// crate's dependencies may disturb: the tests of lf-format run alone.
 fn tests(crates: &[String], long: bool) -> Vec<(String, CommandLine)> {
-    let mut steps = Vec::new();
-    for name in crates {
-        let mut line = CommandLine::new(&format!("cargo test -p {name} --locked"));
-        if long {
-            line = line.with("LFSLAB_LONG", "1");
-        }
-        steps.push((format!("tests of {name}"), line));
-    }
-    for name in ["lf-math", "lf-format"] {
-        let no_std = CommandLine::new(&format!("cargo test -p {name} --no-default-features --locked"));
-        steps.push((format!("tests of {name} without std"), no_std));
-    }
+    let test = |name: &str, packages: &str| {
+        let line = CommandLine::new(&format!("cargo test {packages} --locked"));
+        (format!("tests of {name}"), if long { line.with("LFSLAB_LONG", "1") } else { line })
+    };
+    let mut steps = vec![
+        test("the workspace", &format!("--workspace --exclude {FAULTY}")),
+        test(FAULTY, &format!("-p {FAULTY}")),
+        test("lf-math without std", "-p lf-math --no-default-features"),
+        test("lf-format without std", "-p lf-format --no-default-features"),
+    ];
+    let alone = |name: &String| (format!("{name} alone"), CommandLine::new(&format!("cargo check -p {name} --locked")));
+    steps.extend(crates.iter().map(alone));
     let fuzz = "cargo check -p lf-fuzz --features libfuzzer --locked";
     steps.push(("fuzz targets compile".to_owned(), CommandLine::new(fuzz)));
     if long {
@@ -73,18 +77,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_package_is_tested_alone() {
+    fn every_package_is_tested_and_compiled_alone() {
         let crates = packages(&workspace_root()).unwrap();
         for name in ["lf-bench", "lf-cli", "lf-math", "lf-report", "lf-tests", "xtask"] {
             assert!(crates.iter().any(|found| found == name), "{crates:?}");
         }
-        assert_eq!(tests(&crates, false).len(), crates.len() + 3);
-        assert_eq!(tests(&crates, true).len(), crates.len() + 4);
+        let lines: Vec<String> = tests(&crates, false).iter().map(|(_, line)| line.shell_line()).collect();
+        for line in [
+            "cargo test --workspace --exclude lf-format --locked",
+            "cargo test -p lf-format --locked",
+            "cargo check -p lf-gpu --locked",
+        ] {
+            assert!(lines.iter().any(|found| found == line), "{lines:?}");
+        }
+        assert_eq!(tests(&crates, true).len(), lines.len() + 1);
     }
 
     #[test]
     fn long_sets_its_variable_for_the_tests() {
         let lines: Vec<String> = tests(&["lf-math".to_owned()], true).iter().map(|(_, l)| l.shell_line()).collect();
-        assert_eq!(lines[0], "LFSLAB_LONG='1' cargo test -p lf-math --locked");
+        assert_eq!(lines[1], "LFSLAB_LONG='1' cargo test -p lf-format --locked");
     }
 }
