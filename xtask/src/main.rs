@@ -14,7 +14,7 @@ const USAGE: &str = "\
 Usage: cargo xtask <TASK>
 
 Tasks:
-  test [--long]   run every check: formatting, clippy, docs, all tests on a Vulkan device, each crate alone,
+  test [--long]   run every check: formatting, clippy, docs, all tests on a Vulkan device, each crate compiled alone,
                   other people's programs on our files;
                   installs a software Vulkan driver if there is no adapter, Python and Node if they are missing
                   (Debian, Ubuntu; as root)
