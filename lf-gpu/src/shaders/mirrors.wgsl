@@ -69,13 +69,13 @@ fn mirror_at(place: vec3f) -> Mirror {
 }
 
 fn is_mirror(face: FaceBlocks, block: vec2u, plane: u32) -> bool {
-    let number = face.first + block.y * face.across + block.x;
+    let number = block_number(face, block);
     return (mirrors[number / 16u] >> (2u * (number % 16u) + plane) & 1u) == 1u;
 }
 
 // How many texels show a plane of a block; those that a face lacks count for the first.
 fn texels_of(face: FaceBlocks, place: vec2u, is_second: bool) -> u32 {
-    let number = face.first + place.y * face.across + place.x;
+    let number = block_number(face, place);
     let second = countOneBits(blocks[number].masks[0]) + countOneBits(blocks[number].masks[1]);
     return select(BLOCK_EDGE * BLOCK_EDGE - second, second, is_second);
 }

@@ -38,17 +38,21 @@ fn face_blocks(cube: u32, face: u32) -> FaceBlocks {
     return FaceBlocks(cubes[cube].first_block + face * across * across, across, cubes[cube].scales[face]);
 }
 
+// The number of a face's block.
+fn block_number(face: FaceBlocks, place: vec2u) -> u32 {
+    return face.first + place.y * face.across + place.x;
+}
+
 // Whether a texel is on the second plane of its block.
 fn is_on_second(face: FaceBlocks, texel: vec2u) -> bool {
-    let place = texel / BLOCK_EDGE;
     let inside = texel % BLOCK_EDGE;
     let bit = BLOCK_EDGE * inside.y + inside.x;
-    return (blocks[face.first + place.y * face.across + place.x].masks[bit / 32u] >> (bit % 32u) & 1u) == 1u;
+    return (blocks[block_number(face, texel / BLOCK_EDGE)].masks[bit / 32u] >> (bit % 32u) & 1u) == 1u;
 }
 
 // A function of a block: its value in the middle of the block, what it grows by along x and along y.
 fn plane_of(face: FaceBlocks, place: vec2u, is_second: bool) -> vec3f {
-    let block = face.first + place.y * face.across + place.x;
+    let block = block_number(face, place);
     // Two words of the three are read.
     let both = unpack2x16float(blocks[block].halves[1]);
     let own = unpack2x16float(blocks[block].halves[select(0u, 2u, is_second)]);
